@@ -71,7 +71,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
         engine.dragging.value,
     ),
   );
-  /** The generation level chosen on the timeline, in words. */
+  /** The generation level that the timeline shows, in words. */
   /** @type {Signal<Told | null>} */
   const told = signal(null);
   /** @type {Promise<Description>} */
@@ -98,7 +98,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
   query(field, '.fold').before(...historyButtons(history));
   mountDrop(engine, toast);
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
-  // The layout leaves room for the message that there is no surface, so that it does not hide the box.
+  // The layout counts the message that there is no surface as covered area, so that the message does not hide the box.
   for (const part of ['.empty', '.foot']) layout.follow(query(view, part));
   const boxDrawn = computed(() => isBoxDrawn(engine));
   live(view, () => {
@@ -116,7 +116,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     const mesh = createMeshButton(engine, toast, shared.print);
     const [hide, makeMesh] = [layout.hideMore, () => void mesh.open()];
     const tools = { hide, shortcuts: shortcuts.open, picture, makeMesh, motion, toast };
-    // First what the camera's fit leaves free.
+    // Parts that cover the picture come first, because the camera's fit avoids them.
     const legend = createLegend(engine, description);
     view.prepend(legend, createToolbar(engine, tools));
     layout.follow(legend);
@@ -126,7 +126,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
       () => mountReport(byId('report-body'), engine, description, byId('report-title')),
       () => loadMarks(engine, { stage, view, pins }),
     ]) {
-      // A press is answered between two, and a picture drawn.
+      // Between two parts the browser can handle input and draw.
       await new Promise((resolve) => setTimeout(resolve));
       mountPart();
     }
@@ -138,7 +138,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
 }
 
 /**
- * Loads the marks on the picture, which is as good as before without them.
+ * Loads the marks on the picture. The picture works without them.
  * @param {Engine} engine
  * @param {{ stage: HTMLElement, view: HTMLElement, pins: Pins }} parts
  */
@@ -150,7 +150,7 @@ function loadMarks(engine, { stage, view, pins }) {
 }
 
 /**
- * Loads the timeline; null if it cannot be had, without which the rest of the page still works.
+ * Loads the timeline; null if that fails, and the rest of the page still works.
  * @param {Engine} engine @param {Signal<Told | null>} told @param {Toast} toast
  */
 async function loadTimeline(engine, told, toast) {
@@ -184,10 +184,10 @@ function nameTab(engine) {
   });
 }
 
-/** Gives the page and the browser's frame the chosen theme, and keeps what is chosen. @param {Engine} engine */
+/** Applies the chosen theme to the page and the browser's frame, and stores the choice. @param {Engine} engine */
 function followTheme(engine) {
   let isRead = false;
-  // Nothing before the first state, in which a link may have chosen one.
+  // Waits for the first state, because a link may set the theme.
   const theme = computed(() => engine.state.value.surface && engine.state.value.view.theme);
   effect(() => {
     if (!theme.value) return;
@@ -207,8 +207,7 @@ function followTheme(engine) {
 }
 
 /**
- * Returns what opens the dialog that saves the picture, and what prints it. Both are loaded when they are first
- * asked for.
+ * Returns the functions that open the dialog for saving the picture and print it. Both are loaded on first use.
  * @param {Engine} engine
  * @param {Motion} motion
  * @param {Toast} toast
@@ -245,7 +244,7 @@ function pictureOf(engine, motion, toast) {
 function stopByEscape(engine, motion) {
   const stop = (/** @type {KeyboardEvent} */ event) => {
     if (event.key !== 'Escape' || event.isComposing || !(engine.busy.peek() || engine.loading.peek())) return;
-    // Escape then takes back the drag.
+    // Escape then cancels the drag.
     if (engine.dragging.peek()) return;
     const within = event.composedPath();
     const isCompleting = within.some(
@@ -256,7 +255,7 @@ function stopByEscape(engine, motion) {
     event.stopPropagation();
     if (!motion.stop()) engine.stop();
   };
-  // Before what has the focus takes the key for itself.
+  // Capturing, so that it runs before the focused element's own handler.
   addEventListener('keydown', stop, true);
 }
 

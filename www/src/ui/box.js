@@ -1,4 +1,4 @@
-/** The clip box: the message and the remedy where it cuts the surface, and the ways in which it changes. */
+/** The clip box: the message and remedy when it cuts the surface, and the operations on it. */
 import { clamp, vec } from '../engine/vector.js';
 
 /** @import { Bounds, Engine, Report } from '../engine/types.js' */
@@ -10,8 +10,8 @@ export function doubled({ min, max }) {
 }
 
 /**
- * Returns the box that holds a number of whole periods along every axis that has some, around the same middle.
- * @param {Bounds} bounds @param {readonly (number | null)[]} periods  0 or null where there are none
+ * Returns the box with the same centre that holds a number of whole periods along every periodic axis.
+ * @param {Bounds} bounds @param {readonly (number | null)[]} periods  0 or null for axes without a period
  * @param {number} times
  */
 export function wholePeriods({ min, max }, periods, times) {
@@ -25,9 +25,9 @@ export function wholePeriods({ min, max }, periods, times) {
   return next;
 }
 
-/** Smallest thickness of the box after a drag, as a share of its side before. */
+/** Least extent of the box after a drag, as a share of the extent before. */
 const LEAST_SHARE = 0.02;
-/** Digits of a side that a drag sets. */
+/** Significant digits of a side that a drag sets. */
 const SIDE_DIGITS = 3;
 
 /**
@@ -52,7 +52,7 @@ export function withFace(bounds, axis, end, value) {
 }
 
 /**
- * Returns what is said of a surface that the box cuts, and what helps: a larger box, or one that is fitted anew.
+ * Returns the message for a surface that the box cuts, and the remedy: a larger or a newly fitted box.
  * @param {Pick<Report, 'cut' | 'border'> | null} report
  * @param {ReturnType<Engine['enlargement']>} [enlargement]  of the box
  */
@@ -67,8 +67,7 @@ export function cutOf(report, enlargement = null) {
 }
 
 /**
- * Returns whether the box is drawn: where it is asked for, and where it holds no surface but the field has one
- * elsewhere.
+ * Returns whether the box is drawn: if the user wants it, or if the field has a surface only outside the box.
  * @param {Engine} engine
  */
 export const isBoxDrawn = (engine) =>

@@ -6,7 +6,7 @@ import { icon as draw } from './icons.js';
 /** @import { ButtonProps, Children, Explanation, Side } from './types.js' */
 
 /**
- * Creates a button of the class `button` and those of `class`, with a text or with an icon alone.
+ * Creates a button with the class `button` and the classes in `class`, and a text or only an icon.
  * @param {ButtonProps} props
  * @param {...Children} children
  */
@@ -30,7 +30,7 @@ export function button({ press, icon, off, class: look = icon ? 'plain square' :
 }
 
 /**
- * Creates a name of a figure that is explained on a press.
+ * Creates the name of a figure, which a press explains.
  * @param {() => Explanation} read
  * @param {{ side?: Side }} options
  * @param {...Children} words

@@ -1,29 +1,29 @@
 /**
- * Draws charts: stacked bars from 0 up, or lines. A chart fills the width that it has, so that no text is in the
- * drawing.
+ * Draws charts: stacked bars from 0 up, or lines. The drawing is stretched to the width of the chart, so it contains no
+ * text.
  */
 import { h, s } from './dom.js';
 import { formatCount } from './format.js';
 
 /** @import { Drawn } from './types.js' */
 
-/** Sums of a stack at each place. @param {Drawn['rows']} rows */
+/** Height of the stack at each place. @param {Drawn['rows']} rows */
 const sums = (rows) => rows[0].counts.map((_, k) => rows.reduce((sum, { counts }) => sum + counts[k], 0));
 
 /**
- * The end of the scale, which begins at 0 unless the chart says where: what falls by a tenth is drawn so.
+ * The upper end of the scale, which begins at 0 unless the chart gives a `floor`.
  * @param {Drawn} chart
  */
 const mostOf = ({ kind, rows, guide = [] }) =>
   Math.max(...(kind === 'line' ? rows.flatMap(({ counts }) => counts) : sums(rows)), ...guide, 1e-12);
 
-/** The beginning of the scale in words. @param {Drawn} chart */
+/** The lower end of the scale as text. @param {Drawn} chart */
 export const floorOf = ({ floor, format }) => (floor === undefined ? '0' : format(floor));
 
-/** The largest value in words. @param {Drawn} chart */
+/** The largest value as text. @param {Drawn} chart */
 export const scaleOf = (chart) => chart.format(mostOf(chart));
 
-/** Returns the line below a chart: its first and last place, and its fates if they are several. @param {Drawn} chart */
+/** Returns the line below a chart: its first and last place, and a legend of several fates. @param {Drawn} chart */
 export function footOf({ rows, first, ends: named }) {
   const words = named ?? [formatCount(first), formatCount(first + rows[0].counts.length - 1)];
   const ends = words.map((text) => h('span', null, text));
@@ -32,7 +32,7 @@ export function footOf({ rows, first, ends: named }) {
   return [ends[0], h('span', { class: 'chart-key' }, key), ends[ends.length - 1]];
 }
 
-/** The largest value is drawn at this share of the height. */
+/** Height of the largest value, as a share of the drawing. */
 const RISE = 0.94;
 
 /** @param {Drawn} chart */

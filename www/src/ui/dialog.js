@@ -21,8 +21,8 @@ export function createDialog(title, ...content) {
     ),
     content,
   );
-  // A press on the backdrop closes the dialog. Its padding has the same target, and so does a click
-  // that begins in the dialog and ends beyond it, as when text is selected.
+  // A press on the backdrop closes the dialog. Its padding has the same target, and so does a click that begins in the
+  // dialog and ends outside, as when text is selected.
   const isBeyond = (/** @type {MouseEvent} */ { target, clientX: x, clientY: y }) => {
     const { left, right, top, bottom } = element.getBoundingClientRect();
     return target === element && (x < left || x > right || y < top || y > bottom);

@@ -8,11 +8,11 @@ import { segmentsOf } from './segments.js';
 
 /** @import { Children, Given, Props, SvgProps } from './types.js' */
 
-/** Functions that are called when a node ends. @type {WeakMap<Node, (() => void)[]>} */
+/** Functions to call when a node is disposed of. @type {WeakMap<Node, (() => void)[]>} */
 const endings = new WeakMap();
 
 /**
- * Has `end` called once the node is taken out of the page by {@link fill} or {@link release}.
+ * Calls `end` once {@link fill} or {@link release} removes the node.
  * @param {Node} node
  * @param {() => void} end
  */
@@ -23,13 +23,13 @@ export function endsWith(node, end) {
 }
 
 /**
- * Runs `act` now and after every change of the signals that it reads, as long as the node lasts.
+ * Runs `act` now and after every change of the signals that it reads, until the node is disposed of.
  * @param {Node} node
  * @param {() => void} act
  */
 export const live = (node, act) => endsWith(node, effect(act));
 
-/** Ends what belongs to a node and to all within it. @param {Node} node */
+/** Disposes of a node and all within it. @param {Node} node */
 export function release(node) {
   for (const end of endings.get(node) ?? []) end();
   endings.delete(node);
@@ -37,12 +37,12 @@ export function release(node) {
 }
 
 /**
- * Creates an element of a page.
+ * Creates an HTML element.
  *
- * In `props`, `on` holds event listeners, `data` the data attributes, `style` the properties of CSS and `prop` those of
- * the object. All others are attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none. A
- * function in place of a value or a child is read anew after every change of the signals that it reads, as long as the
- * element lasts.
+ * In `props`, `on` holds event listeners, `data` data attributes, `style` CSS properties and `prop` properties of the
+ * object. All others are attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none. A
+ * function in place of a value or a child is called again after every change of the signals that it reads, until the
+ * element is disposed of.
  *
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
@@ -52,7 +52,7 @@ export function release(node) {
 export const h = (tag, props, ...children) => equip(document.createElement(tag), props ?? {}, children);
 
 /**
- * Creates an element of a drawing, likewise.
+ * Creates an SVG element in the same way.
  * @template {keyof SVGElementTagNameMap} K
  * @param {K} tag
  * @param {SvgProps<SVGElementTagNameMap[K]>} props
@@ -79,7 +79,7 @@ function equip(element, { on = {}, data = {}, style = {}, prop = {}, ...attribut
 }
 
 /**
- * Sets each of the values, and those that are functions again after every change of the signals that they read.
+ * Sets each of the values; a function is called again after every change of the signals that it reads.
  * @param {Node} node
  * @param {object} values
  * @param {(name: string, value: unknown) => void} set
@@ -112,8 +112,8 @@ function append(parent, child) {
 }
 
 /**
- * Appends what `read` returns, and replaces it after every change. A text stays in one node, which changes only with
- * its words.
+ * Appends what `read` returns, and replaces it after every change. A text keeps its node, of which only the data
+ * changes.
  * @param {Node} parent
  * @param {() => Children} read
  */
@@ -138,7 +138,7 @@ function follow(parent, read) {
 }
 
 /**
- * Replaces the children of `parent`, and ends what belongs to those that go.
+ * Replaces the children of `parent`, and disposes of the old ones.
  * @param {Element} parent
  * @param {...Children} children
  */
@@ -175,7 +175,7 @@ export function query(root, selector, kind = HTMLElement) {
 export const queryAll = (root, selector) =>
   [...root.querySelectorAll(selector)].filter((element) => element instanceof HTMLElement);
 
-/** Time in which a second press counts as part of a double click. */
+/** Longest time between the two presses of a double click. */
 const DOUBLE_CLICK_MS = 500;
 
 /** Wraps `act` so that a double click calls it once. @param {() => void} act */
@@ -196,7 +196,7 @@ export function uniqueId(stem) {
   return `${stem}-${last}`;
 }
 
-/** Whether the last input was a key other than a modifier. */
+/** Whether the last input came from the keyboard, modifiers aside. */
 let keyboard = false;
 addEventListener(
   'keydown',
@@ -217,5 +217,5 @@ export const usesKeyboard = () => keyboard;
 /** Returns whether the user prefers reduced motion. */
 export const reducedMotion = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
-/** Shows a message in which code stands between backticks. @param {string} message */
+/** Shows a message, with the text between backticks as code. @param {string} message */
 export const marked = (message) => segmentsOf(message).map(({ text, code }) => (code ? h('code', null, text) : text));

@@ -96,7 +96,7 @@ export function place(element, anchor, side = 'below') {
 }
 
 /**
- * Returns where the top of a popover is to be so that it covers no timeline: there, or above the timeline.
+ * Returns the top of a popover, moved above the timeline if the popover would cover it.
  * @param {number} top @param {number} height
  */
 function clear(top, height) {
@@ -106,8 +106,8 @@ function clear(top, height) {
 }
 
 /**
- * Places an explanation like a popover. Where it would cover charts it stays within the panel of its anchor, or else
- * comes to lie above the charts.
+ * Places an explanation like a popover. If it would cover charts, it is moved into its anchor's panel or else above the
+ * charts.
  * @param {HTMLElement} element @param {Element} anchor @param {Side} [side]
  */
 function placeExplanation(element, anchor, side) {

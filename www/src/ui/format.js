@@ -1,4 +1,4 @@
-/** Formats numbers as English text does: with a point, as in formulas, grouped by commas, and a true minus sign. */
+/** Formats numbers as English text does: with a decimal point, commas between groups, and a true minus sign. */
 
 /** U+2212, which is as wide as a digit. Intl writes a hyphen instead. */
 const MINUS = '\u2212';
@@ -30,10 +30,10 @@ export function formatCount(value) {
   return isNumber(value) ? write(value, { maximumFractionDigits: 0 }) : MISSING;
 }
 
-/** Names the relaxation steps whose time is given. @param {number} steps */
+/** Names the relaxation steps that were timed. @param {number} steps */
 export const lastSteps = (steps) => (steps === 1 ? 'the last step' : `the last ${formatCount(steps)} steps`);
 
-/** Formats the integers within a sentence. @param {string} text */
+/** Groups the digits of integers within a sentence. @param {string} text */
 export const withCounts = (text) => text.replace(/(?<![\d.])\d{4,}(?!\.?\d)/g, (digits) => formatCount(Number(digits)));
 
 /**

@@ -1,7 +1,7 @@
 /**
  * Records the undo history: the last hundred changes of surface, formula, parameters, clip box, cutting plane, settings
- * and camera. Typing up to a pause, a drag and a look around count as one change each. The browser's history is another
- * one: Back leads from surface to surface (main/address.js).
+ * and camera. Typing up to a pause, a drag and a camera motion count as one change each. The browser's history is
+ * separate: Back returns to the previous surface (main/address.js).
  */
 import { effect, signal } from '@preact/signals-core';
 import { MODEL } from '../engine/constants.js';
@@ -12,14 +12,14 @@ import { MODEL } from '../engine/constants.js';
  */
 
 export const MOST_ENTRIES = 100;
-/** Largest pause between changes of the same value that are recorded as one. */
+/** Longest pause between changes of one value that are merged into one entry. */
 const PAUSE_MS = 800;
 
 /** @param {State} state @returns {Moment} */
 export const momentOf = ({ v: _, view, ...shape }) => ({ ...shape, camera: view.camera });
 
 /**
- * Returns whether somebody has moved the camera. Where it follows the surface, its target and distance come from that.
+ * Returns whether the user has moved the camera. If it follows the surface, target and distance are not the user's.
  * @param {Moment} before @param {Moment} after
  */
 function isLookedAround({ camera: a }, { camera: b }) {
@@ -29,7 +29,7 @@ function isLookedAround({ camera: a }, { camera: b }) {
 }
 
 /**
- * Returns the values in which two states differ, such as `formula` or `settings.count`.
+ * Returns the names of the values that differ between two states, such as `formula` or `settings.count`.
  * @param {Moment} before
  * @param {Moment} after
  */
@@ -87,17 +87,17 @@ export class History {
     const present = this.entries[this.#at];
     const found = present && differences(present, moment);
     if (found?.length === 0 || (isTurned && found?.length === 1 && found[0] === 'camera')) {
-      // The camera has followed the surface.
+      // The camera has only followed the surface.
       this.entries[this.#at] = moment;
       return;
     }
-    // A formula that is written for a model from points, or in its place, brings its surface along.
+    // A formula written for or instead of a model from points changes the surface along with it.
     const isFormula = isWritten && found?.includes('formula') && found.includes('surface');
     const what = isFormula ? 'formula' : found?.length === 1 ? found[0] : null;
     const goesOn =
       what !== null &&
       what === this.#open &&
-      // A look around is one change, however long it takes; to fit the surface again is another.
+      // A camera motion is one change, however long it takes; fitting the surface again is another.
       (what === 'camera'
         ? present?.camera.fit === moment.camera.fit
         : nowMs - this.#lastMs < PAUSE_MS || (faulty && what === 'formula'));
@@ -128,7 +128,7 @@ export class History {
  */
 export function createHistory(engine, moves) {
   const history = new History();
-  /** How often the page had turned the camera when the state got its last one. */
+  /** `engine.turned` when the state got its present camera. */
   let turned = engine.turned.peek();
   let { camera } = engine.state.peek().view;
   const canUndo = signal(false);
@@ -138,7 +138,7 @@ export function createHistory(engine, moves) {
     if (!engine.description.value || state.surface === '') return;
     const own = engine.description.value.surfaces.find(({ id }) => id === state.surface)?.formula ?? MODEL;
     const [last, now] = [turned, engine.turned.peek()];
-    // The state has the new camera once the picture stands still.
+    // The state gets the new camera once the picture stands still.
     if (state.view.camera !== camera) [turned, camera] = [now, state.view.camera];
     const how = {
       faulty: engine.fieldError.peek() !== null,
@@ -159,7 +159,7 @@ export function createHistory(engine, moves) {
   });
   /** @param {-1 | 1} step */
   const move = (step) => {
-    // What is under way is recorded, so that the way back leads to it.
+    // A change in progress is recorded first, so that redo leads back to it.
     record(engine.state.peek());
     const entry = history.move(step);
     if (entry) engine.restore(entry);

@@ -37,7 +37,7 @@ const PATHS = /** @type {const} */ ({
 /** @typedef {keyof typeof PATHS} IconName */
 
 /**
- * Creates a decorative icon. The element that contains it carries the accessible name.
+ * Creates a decorative icon. The element around it carries the accessible name.
  * @param {IconName} name
  */
 export const icon = (name) =>

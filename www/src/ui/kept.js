@@ -1,4 +1,4 @@
-/** What belongs to a surface and stays when its formula changes, in words, with what ends it. */
+/** Things of a surface that stay when its formula changes, in words, each with the action that removes it. */
 import { dot, triple } from '../engine/vector.js';
 import { formatSignificant } from './format.js';
 import { equationOf } from './space.js';
@@ -16,7 +16,7 @@ export function hidesAll({ count, positions }, { normal, offset }) {
   return count > 0;
 }
 
-/** What stays, and what ends it. @param {Engine} engine @returns {Kept[]} */
+/** What stays, and the action that removes it. @param {Engine} engine @returns {Kept[]} */
 export function keptOf(engine) {
   const { plane, bounds, settings } = engine.state.value;
   void engine.revision.value;

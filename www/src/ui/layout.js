@@ -12,11 +12,11 @@ import { remembered } from './remembered.js';
  * @import { LayoutOptions } from './types.js'
  */
 
-/** Width of a phone in portrait orientation, with panels and tabs below the picture. */
+/** Width up to which the page is laid out for a phone: panels and tabs below the picture. */
 const COMPACT = '(max-width: 44.95em)';
 
 /**
- * The part of the page that is hidden: `panels` leaves the picture with caption and timeline, to be presented.
+ * The hidden part of the page: `panels` leaves picture, caption and timeline, for presenting.
  * @typedef {'nothing' | 'panels' | 'all'} Hidden
  */
 
@@ -50,7 +50,7 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
     if (hidden === 'nothing') delete shell.dataset.hidden;
     else shell.dataset.hidden = hidden;
     const { activeElement: focused } = document;
-    // The focus does not stay on what is hidden.
+    // The focus must not stay on a hidden element.
     if (focused instanceof HTMLElement && focused !== document.body && focused.offsetParent === null) unhide.focus();
   }
 
@@ -60,7 +60,7 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
     const size = (/** @type {string} */ part) => view.querySelector(part) ?? { clientWidth: 0, clientHeight: 0 };
     const [tools, legend] = [size('.toolbar'), size('.legend')];
     // On a phone the tools, the legend and the foot would cover the surface, so their areas are not free. In a larger
-    // window a fit leaves the corner of the legend free.
+    // window only the legend's corner is kept free.
     const [aside, above] = compact.matches ? [tools.clientWidth, legend.clientHeight] : [0, 0];
     const foot = compact.matches ? (view.querySelector('.foot')?.getBoundingClientRect().top ?? bottom) : bottom;
     inset({
@@ -80,7 +80,7 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
     /** Updates the free area whenever a part of the view changes its size. @param {HTMLElement} part */
     follow: (part) => sizes.observe(part),
     measure,
-    /** Hides the panels; then caption and timeline, too; then nothing. */
+    /** Hides the panels, then also caption and timeline, then shows all again. */
     hideMore: () => hide(shell.dataset.hidden === 'all' ? 'nothing' : shell.dataset.hidden ? 'all' : 'panels'),
   };
 }

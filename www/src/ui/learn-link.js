@@ -1,4 +1,4 @@
-/** The links to the learn page, which carry the surface of the picture over, and a particle to be explained there. */
+/** Links to the learn page, which pass on the surface of the picture, and a particle to be explained there. */
 
 import { NO_PARENT } from '../engine/core-numbers.js';
 import { givenOf } from '../engine/given.js';
@@ -10,7 +10,7 @@ import { packCarried, packParticle } from './surface-link.js';
 
 const PAGE = './learn/';
 
-/** The surface of the picture, and the way back, for the address of the learn page. @param {Engine} engine */
+/** The picture's surface and the link back, for the address of the learn page. @param {Engine} engine */
 function carried(engine) {
   const surface = engine.lessonSurface();
   const formula = surface && 'formula' in surface ? surface : null;
@@ -19,13 +19,13 @@ function carried(engine) {
 
 /** @param {HTMLAnchorElement} link  of the page's markup @param {Engine} engine */
 export function bindLearnLink(link, engine) {
-  /** Says where the link leads just before it is followed or copied. */
+  /** Sets the link's target just before it is followed or copied. */
   const write = () => {
     link.href = `${PAGE}#${carried(engine)}`;
   };
   for (const type of ['pointerdown', 'focus', 'click']) link.addEventListener(type, write);
   explain(link, () => {
-    // What files hold is too large for a link.
+    // The contents of a file are too large for a link.
     const given = givenOf(engine.field.peek());
     const on = given ? `an ellipsoid: a link cannot hold the ${given.holds} of ${given.name}` : 'this surface';
     return { title: 'The lesson', text: `The paper’s idea in one sitting, with figures on ${on}.` };
@@ -33,8 +33,8 @@ export function bindLearnLink(link, engine) {
 }
 
 /**
- * Where the lesson explains a particle of the picture. It follows particles of one size only: of many sizes it shows
- * how they find room.
+ * Returns the link to the lesson's explanation of a particle. The lesson follows only particles of uniform size; for
+ * varying sizes it shows how children find room.
  * @param {Engine} engine @param {number} index
  */
 export function particleLink(engine, index) {

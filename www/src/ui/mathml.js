@@ -30,8 +30,8 @@ const operatorOf = (node) => (node.tag === 'mo' ? node.text : null);
 const isBreak = (node) => BREAKS.has(operatorOf(node) ?? '');
 
 /**
- * Splits a formula into parts that may be on different lines: at the operators of sums and products outside brackets,
- * and likewise in the arguments of a function of several.
+ * Splits a formula into parts that may go on different lines: at the operators of sums and products outside brackets,
+ * and likewise within the arguments of a function.
  * @param {MathNode} node
  * @returns {MathNode[][]}
  */
@@ -61,7 +61,7 @@ export function partsOfMath(node) {
 const isOpen = (node) => node.tag === 'mrow' && (operatorOf(node.children[0]) === null || isBreak(node.children[0]));
 
 /**
- * Returns whether a node is the arguments of a function, in brackets and more than one.
+ * Returns whether a node is a bracketed list of several arguments.
  * @param {MathNode} node
  * @returns {node is Extract<MathNode, {children: unknown}>}
  */
@@ -71,7 +71,7 @@ const isList = (node) =>
   node.children.some((child) => operatorOf(child) === ',');
 
 /**
- * Returns the lines of a formula: its definitions and its surface, which are the rows of a table.
+ * Returns the lines of a formula, which are rows of a table: its definitions and its surface.
  * @param {MathNode} node
  * @returns {MathNode[]}
  */
@@ -81,10 +81,10 @@ const linesOf = (node) =>
 /** @param {MathNode[]} cells */
 const cellsOf = (cells) => cells.flatMap((cell) => ('children' in cell ? cell.children : [cell]));
 
-/** Returns the lines of a formula, each as several elements, between which it may break. @param {MathNode} node */
+/** Returns each line of a formula as elements between which it may break. @param {MathNode} node */
 export const mathLines = (node) => linesOf(node).map(mathParts);
 
-/** Returns the formula as several elements, between which a line may break. @param {MathNode} node */
+/** Returns the formula as elements between which a line may break. @param {MathNode} node */
 export const mathParts = (node) =>
   partsOfMath(node).map((part) => {
     const children = part.map(build);

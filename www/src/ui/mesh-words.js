@@ -1,4 +1,4 @@
-/** Says what a mesh is: whether it is closed, its parts and its size, and the figures behind that. */
+/** Describes a mesh: whether it is closed, its parts and its size, and the figures behind that. */
 
 import { formatCount, formatFixed, formatSignificant, plural } from './format.js';
 import { sidesOf } from './print.js';
@@ -6,7 +6,7 @@ import { sidesOf } from './print.js';
 /** @import { MeshAnswer } from '../engine/types.js' */
 
 /**
- * What is said of the sign of f inside of the closed parts.
+ * Texts for the sign of f inside the closed parts.
  * @type {Record<NonNullable<MeshAnswer['inside']>, string>}
  */
 const INSIDE = {
@@ -15,9 +15,9 @@ const INSIDE = {
   'f < 0, f > 0': 'f is larger in some parts; files face outward',
 };
 
-/** Most components whose Euler numbers are told one by one. */
+/** Largest number of components whose Euler numbers are listed. */
 const MOST_TOLD = 3;
-/** Digits of a length: tenths of a part of 40 mm. */
+/** Significant digits of a length: 0.1 mm for a part of 40 mm. */
 const SIZE_DIGITS = 3;
 
 /** Number of open edges of a mesh. @param {MeshAnswer} mesh */
@@ -31,8 +31,8 @@ function partsOf({ bodies }) {
 }
 
 /**
- * Returns the verdict on a mesh in one line. All of it is counted on the triangles themselves, those at borders among
- * them, which are those of the file.
+ * Returns the verdict on a mesh in one line. It counts the very triangles that the file contains, including those at
+ * borders.
  * @param {MeshAnswer} mesh
  * @param {{ scale?: number, unit?: string }} [file]  length of a unit of the formula, and its unit, in a file
  */
@@ -52,7 +52,7 @@ export function verdictOf(mesh, { scale = 1, unit = '' } = {}) {
 }
 
 /**
- * Returns the figures of a mesh by their names.
+ * Returns pairs of a name and a figure of a mesh.
  * @param {MeshAnswer} mesh
  * @param {{ scale?: number, unit?: string }} [file]
  * @returns {[string, string][]}

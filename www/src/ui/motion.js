@@ -1,6 +1,5 @@
 /**
- * Moves by itself what the user otherwise drags: one parameter between the ends of its slider, and the surface on a
- * turntable.
+ * Animates what the user otherwise drags: one parameter between the ends of its slider, and the turn of the surface.
  */
 import { signal } from '@preact/signals-core';
 import { snap } from './scale.js';
@@ -10,10 +9,10 @@ import { snap } from './scale.js';
  * @import { Course, Range } from './types.js'
  */
 
-/** Seconds in which a parameter crosses its range, and in which the turntable turns once, at the usual speed. */
+/** Seconds in which a parameter crosses its range, and the turntable makes one turn, at the usual speed. */
 export const CROSSING_S = 6;
 export const TURN_S = 12;
-/** Longest step of time, so that nothing jumps after a pause of the page. */
+/** Longest time step, so that nothing jumps after a pause of the page. */
 const LONGEST_STEP_S = 0.1;
 
 /**
@@ -73,7 +72,7 @@ export function createMotion(engine, stage) {
     turning.value = false;
   });
   return {
-    /** Name of the parameter that moves. */
+    /** Name of the animated parameter. */
     playing,
     turning,
     /** Whether a film is being made. It moves parameters and the camera. */
@@ -81,7 +80,7 @@ export function createMotion(engine, stage) {
     course,
     speed,
     stop,
-    /** Starts a parameter, or stops it. @param {Range} range */
+    /** Starts or stops the motion of a parameter. @param {Range} range */
     toggle(range) {
       const wasPlaying = playing.peek();
       player?.rest();
@@ -98,7 +97,7 @@ export function createMotion(engine, stage) {
   };
 }
 
-/** A parameter that moves. */
+/** An animated parameter. */
 class Player {
   /** The value set last. */
   #value;
@@ -113,7 +112,7 @@ class Player {
     this.#crossings = Math.min(1, Math.max(0, place));
   }
 
-  /** Returns the parameter's value on the page, NaN if the formula no longer has it. */
+  /** Returns the parameter's value on the page; NaN if the formula no longer has it. */
   #present() {
     const { engine, range } = this;
     const parameter = engine.field.peek()?.parameters.find(({ name }) => name === range.name);
@@ -121,14 +120,14 @@ class Player {
   }
 
   /**
-   * Goes on by some seconds.
+   * Advances by some seconds.
    * @param {number} passedS @param {Course} course
-   * @returns false if somebody else has set the parameter, or the formula no longer has it
+   * @returns false if something else has set the parameter, or the formula no longer has it
    */
   step(passedS, course) {
     if (this.#present() !== this.#value) return false;
     this.#crossings += passedS / CROSSING_S;
-    // A run that takes longer than a frame is waited for: it would otherwise be replaced before anything of it is seen.
+    // It waits for a run longer than a frame, which would otherwise be replaced before any of it is seen.
     if (this.engine.busy.peek()) return true;
     const value = valueAt(this.range, placeAt(this.#crossings, course));
     if (value !== this.#value) {
@@ -138,7 +137,7 @@ class Player {
     return true;
   }
 
-  /** Ends with a run of full quality. */
+  /** Ends with a run at full quality. */
   rest() {
     if (this.#present() === this.#value) this.engine.setParameter(this.range.name, this.#value);
   }

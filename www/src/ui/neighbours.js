@@ -1,7 +1,7 @@
-/** Neighbours of particles, and statistics of what is measured between them. */
+/** Neighbours of particles, and statistics of distances between them. */
 
 /**
- * A number for a cell. Two cells may share one: then some particles are compared in vain.
+ * Hash of a cell. If two cells share one, some particles are compared in vain.
  * @param {number} x
  * @param {number} y
  * @param {number} z
@@ -26,7 +26,7 @@ export function createGrid(positions, chosen, cell) {
   }
   return {
     /**
-     * Goes through the particles of the cells that are `ring` cells away from that of a particle.
+     * Yields the particles of the cells that are `ring` cells away from the cell of particle `i`.
      * @param {number} i
      * @param {number} ring
      */

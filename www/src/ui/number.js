@@ -1,6 +1,6 @@
 /**
- * Number boxes: text that is read as a number of the language of formulas, such as `pi/2`. To assistive technology
- * they are native number boxes.
+ * Number boxes: text fields for a number in the language of formulas, such as `pi/2`. Assistive technology sees native
+ * number boxes.
  */
 import { h } from './dom.js';
 

@@ -1,19 +1,19 @@
-/** Has the site's service worker store all of it, so that the pages work without a network. */
+/** Makes the site's service worker store the whole site, so that the pages work without a network. */
 
-/** Longest time for which an idle moment is awaited. */
+/** Longest wait for an idle moment. */
 const PATIENCE_MS = 10_000;
 
 /**
- * Registers the service worker at the next idle moment, because it fetches all files of the site, and has it answer
- * this page, too, as soon as it is active.
+ * Registers the service worker at the next idle moment, because it fetches all files of the site. As soon as it is
+ * active, it serves this page, too.
  *
- * The page asks for that, and the worker does not take every page over by itself: a request that WebKit has begun just
- * before a page is taken over never ends, and a page that loads has begun many.
+ * The page asks for that, and the worker does not take over every page by itself: in WebKit a request that has begun
+ * just before never ends, and a page that is loading has begun many.
  * @param {string} script
  * @param {(registration: ServiceWorkerRegistration, isFirst: boolean) => void} [then]  `isFirst`: no version was stored
  */
 export function storeSite(script, then = () => {}) {
-  // The development server has its files from the sources.
+  // The development server serves the source files themselves.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const { serviceWorker } = navigator;
   const begin = async () => {

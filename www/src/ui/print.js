@@ -1,6 +1,6 @@
 /**
- * A part to be printed: its size in millimetres, and the thickness of the formula that gives a wall
- * of so many of them.
+ * A part to be printed: its size in millimetres, and the thickness in the formula's units that gives a wall of so many
+ * millimetres.
  */
 import { signal } from '@preact/signals-core';
 
@@ -9,11 +9,11 @@ import { signal } from '@preact/signals-core';
  * @import { Print, Span } from './types.js'
  */
 
-/** Longest side of a part at first: it fits every printer, and prints within hours. */
+/** Default of a part's longest side: it fits every printer, and prints within hours. */
 const USUAL_MM = 40;
-/** Distance from a face of the box, as a share of the side, within which a part is cut off by it. */
+/** Distance from a face of the box, as a share of the side, within which the face cuts the part. */
 const AT_FACE = 1e-3;
-/** Millimetres of the units in which a length may be typed. @type {Record<string, number>} */
+/** Millimetres in each unit of a typed length. @type {Record<string, number>} */
 const MM = { mm: 1, cm: 10, m: 1000, in: 25.4 };
 
 /** A length with its unit, in millimetres; null for any other text. @param {string} text */
@@ -24,7 +24,7 @@ export function millimetresOf(text) {
 }
 
 /**
- * The sides of the box around some bodies.
+ * The sides of the bounding box of some bodies.
  * @param {readonly Pick<Body, 'min' | 'max'>[]} bodies
  * @returns {Vec3}
  */
@@ -38,9 +38,8 @@ export const sidesOf = (bodies) =>
   );
 
 /**
- * The longest side of a box around a sheet, and at how many of its two ends the sheet ends by
- * itself, so that a thicker
- * one reaches farther.
+ * The longest side of a sheet's bounding box, and how many of its two ends are not cut by the clip box, so that a
+ * thicker sheet reaches farther there.
  * @param {Pick<Bounds, 'min' | 'max'>} around
  * @param {Bounds | null} box  that cuts the surface
  * @returns {Span}
@@ -55,9 +54,8 @@ export function spanOf({ min, max }, box) {
 }
 
 /**
- * The thickness of a sheet whose wall is as thick as wanted once its longest side has the wanted
- * size: each free end
- * moves by half of the thickness. Null where the wall alone is larger than that.
+ * The thickness of a sheet that gives the wanted wall once its longest side is scaled to the wanted size: each free end
+ * moves by half the thickness. Null if the wall alone is larger than the size.
  * @param {number} wallMm @param {number} sizeMm
  * @param {Span & { thickness: number }} present
  */
@@ -70,7 +68,7 @@ export function thicknessOf(wallMm, sizeMm, { side, free, thickness }) {
 /** @param {Engine} engine @returns {Print} */
 export function createPrint(engine) {
   const sizeMm = signal(USUAL_MM);
-  /** What is there: the mesh, or else the particles, which lie on the same surface. */
+  /** The bounding box of the mesh, or else of the particles, which lie on the same surface. */
   const around = () => {
     const bodies = engine.mesh.value?.bodies ?? [];
     void engine.revision.value;
@@ -86,7 +84,7 @@ export function createPrint(engine) {
     return /** @type {Bounds} */ (box);
   };
   const span = () => spanOf(around(), engine.field.value?.bounds ?? null);
-  /** The thickness that is set; null for a formula. */
+  /** The thickness setting; null for a formula. */
   const thickness = () => {
     const set = engine.state.value.settings.thickness ?? 0;
     return typeof set === 'number' ? set : null;

@@ -1,4 +1,4 @@
-/** Creates a native range of whole places, which begin at 0. */
+/** Creates a native range input of integers from 0. */
 import { h, live } from './dom.js';
 
 /** @import { RangeOptions } from './types.js' */
@@ -15,13 +15,13 @@ export function createRange({ max, at, say, change, look = 'slider', ...props })
     on: {
       input() {
         change(range.valueAsNumber);
-        // What is not taken goes back.
+        // A refused change is undone.
         range.valueAsNumber = at();
       },
     },
     ...props,
   });
-  // The limit comes before the place, which it cuts.
+  // The maximum is set before the value, which it limits.
   live(range, () => {
     range.max = String(max());
     range.valueAsNumber = at();

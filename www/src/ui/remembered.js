@@ -1,8 +1,8 @@
-/** What the browser keeps of a page, apart from what is in the link. */
+/** What the browser stores for a page, apart from the contents of the link. */
 import { effect, signal } from '@preact/signals-core';
 
 /**
- * A text that is there again when the page is next opened; without storage it is lost when the page closes.
+ * A text that is stored for the next visit; without storage it is lost when the page closes.
  * @param {string} name
  */
 export function kept(name) {
@@ -11,7 +11,7 @@ export function kept(name) {
   try {
     storage = localStorage;
   } catch {
-    // The browser allows none.
+    // The browser allows no storage.
   }
   return {
     text: storage?.getItem(key) ?? '',
@@ -27,7 +27,7 @@ export function kept(name) {
 }
 
 /**
- * Returns a switch that has its last position again when the page is next opened.
+ * Returns a switch whose position is stored for the next visit.
  * @param {string} name
  * @param {boolean} usual  its position at first
  */

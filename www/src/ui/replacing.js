@@ -1,4 +1,4 @@
-/** Says what ends with a formula that another one takes the place of. */
+/** Names what is lost when another surface replaces the present one. */
 import { keptOf } from './kept.js';
 
 /**
@@ -6,11 +6,11 @@ import { keptOf } from './kept.js';
  * @import { Replace, Toast } from './types.js'
  */
 
-/** The first letter small, within a sentence. @param {string} text */
+/** Lower-cases the first letter, for use within a sentence. @param {string} text */
 const within = (text) => text.charAt(0).toLowerCase() + text.slice(1);
 
 /**
- * Returns a function that does what replaces the surface, and names what was set for the one before.
+ * Returns a function that replaces the surface and names what was set for the one before.
  * @param {Pick<Engine, 'state' | 'field' | 'columns' | 'revision' | 'enlargement'>} engine
  * @param {Toast} toast
  * @returns {Replace}

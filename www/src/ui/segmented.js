@@ -18,7 +18,7 @@ export function createSegmented({ name, choices, value: checked, disabled, chang
       on: { change: () => void Promise.resolve(change(value)).then(check) },
     }),
   );
-  // A choice that is not taken over goes back to the present one.
+  // A refused choice is undone.
   const check = () => {
     for (const input of inputs) input.checked = input.value === checked();
   };

@@ -4,7 +4,7 @@ import { fill, h, live } from './dom.js';
 /** @import { SelectOptions } from './types.js' */
 
 /**
- * Creates a select. It shows the choice that `value` names; without one it keeps what the user has chosen.
+ * Creates a select. It shows the choice given by `value`; without `value` it keeps the user's choice.
  * @template {string | number} T
  * @param {SelectOptions<T>} options
  */

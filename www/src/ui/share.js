@@ -31,7 +31,7 @@ export async function copyLink(engine, toast) {
 }
 
 /**
- * Copies the program that makes these particles.
+ * Copies a program that makes the same particles.
  * @param {Engine} engine @param {Toast} toast @param {Language} language @param {string} name  of the language
  */
 export async function copyCode(engine, toast, language, name) {
@@ -44,13 +44,13 @@ export async function copyCode(engine, toast, language, name) {
   }
 }
 
-/** Returns the page's address with the whole state in it. @param {Engine} engine */
+/** Returns the page's address, which contains the whole state. @param {Engine} engine */
 const linkTo = async (engine) => location.origin + location.pathname + (await engine.link());
 
 /** @param {Engine} engine @param {Toast} toast @param {ParticleFormat} format */
 export function exportFile(engine, toast, format) {
   const make = async () => engine.exportFile(format, { link: await linkTo(engine) });
-  // The record has the name by which the command line finds it beside the file of the particles.
+  // The record's name is the one by which the command line finds it beside the file of particles.
   const ending = format === 'json' ? 'csv.json' : format;
   return exported(engine, toast, 'particles', make, `${stem(engine)}.${ending}`);
 }
@@ -90,7 +90,7 @@ async function exported(engine, toast, what, make, name) {
   }
 }
 
-/** Returns the name of a file, without its extension. @param {Engine} engine */
+/** Returns the name of a file without its extension. @param {Engine} engine */
 export function stem(engine) {
   const surface = engine.field.peek()?.surface ?? 'formula';
   return `${surface}-${engine.progress.peek().particles}`;

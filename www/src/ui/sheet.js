@@ -1,4 +1,4 @@
-/** Loads the style sheet of a part of the page that comes later. */
+/** Loads the style sheet of a part of the page on demand. */
 import { h } from './dom.js';
 
 /** @param {string} href @returns {Promise<void>} */

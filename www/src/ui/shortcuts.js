@@ -19,7 +19,7 @@ function types(target) {
   );
 }
 
-/** Follows the page's link to the lesson, which takes the surface along. @param {Event} event */
+/** Follows the page's link to the lesson, which passes on the surface. @param {Event} event */
 function follow(event) {
   event.preventDefault();
   byId('learn-link').click();

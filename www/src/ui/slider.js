@@ -1,6 +1,6 @@
 /**
- * A slider with a number box, made of native inputs that share one value. Shift makes the steps ten times finer, and a
- * double click resets the value. The number can be typed and stepped.
+ * A slider with a number box: native inputs that share one value. Shift makes the steps ten times finer, and a double
+ * click resets the value. The number can be typed and stepped.
  */
 
 import { signal, untracked } from '@preact/signals-core';
@@ -68,7 +68,7 @@ class Model {
         if (!this.dragging) this.take(toValue(this.scale, place / PLACES), true);
       },
       'aria-label': () => {
-        // The name is that of the present surface's parameter, as the scale is.
+        // The name belongs to the present surface's parameter, as the scale does.
         void this.#scale.value;
         return this.options.name;
       },
@@ -92,7 +92,7 @@ class Model {
     this.#value.value = value;
   }
 
-  /** Adopts and reports a value. @param {number} next @param {boolean} live */
+  /** Sets and reports a value. @param {number} next @param {boolean} live */
   take(next, live) {
     if (next === this.value && live) return;
     this.value = next;
@@ -100,7 +100,7 @@ class Model {
     this.options.change(next, live);
   }
 
-  /** Shows the value in the box. @param {Element} [except]  an input to leave as it is */
+  /** Shows the value in the box. @param {Element} [except] an input that is not changed */
   write(except) {
     const { box, scale, value } = this;
     if (box && except !== box) showNumber(box, this.#numberOf(exact(scale, value)));
@@ -137,7 +137,7 @@ function listenToBox(model, input) {
     const { scale, options } = model;
     const text = input.value;
     const number = await (options.read ?? plainNumber)(text);
-    // What was typed meanwhile is read in its turn.
+    // Text typed meanwhile is read by its own event.
     if (input.value !== text) return;
     const typed = number === null ? NaN : number / model.factor;
     // The box accepts any number within the range, not only values on the slider's grid.
@@ -162,7 +162,7 @@ function listenToBox(model, input) {
 /** Reads a plain number; null for any other text. @param {string} text */
 const plainNumber = async (text) => (text.trim() === '' || Number.isNaN(Number(text)) ? null : Number(text));
 
-/** Handles dragging, since the native drag has no finer steps. @param {Model} model */
+/** Handles dragging, because the native drag has no finer steps. @param {Model} model */
 function listenToPointer(model) {
   const { range, options } = model;
   let place = 0;
@@ -184,14 +184,14 @@ function listenToPointer(model) {
     lastX = event.clientX;
     const now = toPlace(model.scale, model.value);
     const { width } = range.getBoundingClientRect();
-    // A press on the thumb, or with Shift, leaves the value. A press on the track moves the thumb there.
+    // A press on the thumb, or with Shift, keeps the value. A press on the track moves the thumb there.
     const near = Math.abs(placeAt(event) - now) * width < 12;
     place = near || event.shiftKey ? now : placeAt(event);
     if (!near && !event.shiftKey) model.take(toValue(model.scale, place), true);
   });
   range.addEventListener('pointermove', (event) => {
     if (!model.dragging) return;
-    // A slider that was hidden during the drag has no width.
+    // A slider hidden during the drag has no width.
     if (!range.checkVisibility()) return end();
     const width = Math.max(1, range.getBoundingClientRect().width - THUMB_PX);
     const fineness = event.shiftKey ? 10 : 1;
@@ -210,7 +210,7 @@ function listenToPointer(model) {
   range.addEventListener('dblclick', options.reset);
 }
 
-/** Handles keys and the values that assistive technology sets directly. @param {Model} model */
+/** Handles keys and values set by assistive technology. @param {Model} model */
 function listenToKeys(model) {
   const { range, options } = model;
   range.addEventListener('change', () => {

@@ -47,11 +47,11 @@ export function anglesOf([x, y, z]) {
   return { azimuth: across > 1e-9 ? Math.atan2(y, x) : 0, elevation: Math.atan2(z, across) };
 }
 
-/** Largest other component of a unit vector that counts as being along an axis. Links hold six digits. */
+/** Largest other component of a unit vector that counts as parallel to an axis. Links hold six digits. */
 const STRAIGHT = 1e-5;
 
 /**
- * Returns the axis along which a unit vector lies, and its sign; null for a free direction.
+ * Returns the axis to which a unit vector is parallel, and its sign; null for a free direction.
  * @param {ArrayLike<number>} direction
  */
 export function axisOf(direction) {
@@ -62,7 +62,7 @@ export function axisOf(direction) {
   return null;
 }
 
-/** The equation of a plane across an axis; null for any other. @param {CuttingPlane} plane */
+/** The equation of a plane perpendicular to an axis; null for any other. @param {CuttingPlane} plane */
 export function equationOf({ normal, offset }) {
   const straight = axisOf(normal);
   return straight && `${AXES[straight.axis]} = ${formatSignificant(straight.sign * offset, 3)}`;
@@ -85,7 +85,7 @@ export function extentOf({ min, max }, direction) {
 }
 
 /**
- * Returns the corners of the polygon in which a plane cuts a box, in order around it; none where it misses the box.
+ * Returns the corners of the polygon in which a plane cuts a box, in order around it; empty if it misses the box.
  * @param {Bounds} bounds
  * @param {CuttingPlane} plane
  */
@@ -113,7 +113,7 @@ export function sectionOf(bounds, { normal, offset }) {
   return points.sort((p, q) => angle(p) - angle(q));
 }
 
-/** Returns a unit vector across a unit vector. @param {ArrayLike<number>} n @returns {Vec3} */
+/** Returns a unit vector perpendicular to a unit vector. @param {ArrayLike<number>} n @returns {Vec3} */
 function across(n) {
   const other = Math.abs(n[0]) < 0.7 ? axisVector(0) : axisVector(1);
   const v = cross(n, other);
@@ -121,11 +121,11 @@ function across(n) {
   return [v[0] / length, v[1] / length, v[2] / length];
 }
 
-/** Squared sine of the angle between a ray and a line below which the ray does not tell a place on the line. */
+/** Squared sine of the angle between a ray and a line below which the nearest point on the line is ill-defined. */
 const END_ON = 0.02;
 
 /**
- * Returns how far along a line the place nearest to a ray lies; null where the ray runs along the line.
+ * Returns the coordinate along a line of the point nearest to a ray; null if the two are almost parallel.
  * @param {Ray} ray
  * @param {ArrayLike<number>} origin  of the line
  * @param {ArrayLike<number>} axis  its unit direction
@@ -139,8 +139,8 @@ export function placeAlong({ eye, direction }, origin, axis) {
 }
 
 /**
- * Returns the direction from the centre of a sphere to where a ray meets it first or, on the far side, last; for a ray
- * that misses the sphere, to the place nearest to the ray.
+ * Returns the direction from a sphere's centre to the first or, on the far side, last intersection with a ray; for a
+ * ray that misses the sphere, to the point nearest to the ray.
  * @param {Ray} ray
  * @param {ArrayLike<number>} centre
  * @param {number} radius
@@ -179,7 +179,7 @@ export function ticksIn(low, high, step) {
 }
 
 /**
- * Returns what is measured between two particles: their straight distance in units, and over the sum of their radii.
+ * Returns the straight distance of two particles, in units and over the sum of their radii.
  * @param {Columns} columns
  * @param {readonly number[]} pair
  */

@@ -1,6 +1,6 @@
 /**
- * A surface in the address of the learn page: its formula, its parameters and its box, and the way back to the page
- * from which it comes. What is read from an address may be anything, so every part of it is checked.
+ * A surface in the learn page's address: its formula, parameters and box, and the link back to the page that it comes
+ * from. An address can contain anything, so every part of it is checked.
  */
 import { MOST_PARAMETERS } from '../engine/constants.js';
 import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
@@ -9,22 +9,22 @@ import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
 /** @import { FormulaSurface } from './types.js' */
 
 /**
- * The surface that a link hands over. `surface` is null if it comes from points, which no address can hold; `from` is
+ * The surface that a link passes on. `surface` is null if it comes from points, which no address can hold; `from` is
  * the fragment of the page's own address.
  * @typedef {{ surface: FormulaSurface | null, from: string }} Carried
  */
 
-/** A surface in words. @param {Pick<FormulaSurface, 'formula' | 'parameters'>} surface */
+/** Describes a surface. @param {Pick<FormulaSurface, 'formula' | 'parameters'>} surface */
 export const surfaceWords = ({ formula, parameters }) =>
   [formula, ...parameters.map(({ name, value }) => `${name} = ${value}`)].join(', ');
 
-/** Longest text that is read: more than a formula of the greatest length with all parameters. */
+/** Longest text that is read: longer than the longest formula with all parameters. */
 const LONGEST = 65_536;
 
-/** Writes any plain data for an address. @param {unknown} data */
+/** Encodes plain data for an address. @param {unknown} data */
 export const packed = (data) => toBase64url(new TextEncoder().encode(JSON.stringify(data)));
 
-/** Reads what `packed` has written; null if it is damaged. @param {string} text @returns {any} */
+/** Decodes the output of `packed`; null if it is damaged. @param {string} text @returns {any} */
 export function unpacked(text) {
   if (text.length > LONGEST) return null;
   try {
@@ -41,18 +41,18 @@ export function packCarried({ surface, from }) {
 }
 
 /**
- * A particle that the lesson is to explain: where it was placed, its radius, and where the fronts of the picture began.
+ * A particle for the lesson to explain: where it was placed, its radius, and the seeds of the picture.
  * @typedef {{ place: Vec3, radius: number, seeds: Vec3[] }} Explained
  */
 
-/** More seeds than these are left out: the lesson finds seeds of its own. */
+/** With more seeds than these none is passed on, and the lesson finds its own. */
 const MOST_SEEDS = 24;
 
 /** @param {Explained} particle */
 export const packParticle = ({ place, radius, seeds }) =>
   packed({ place, radius, seeds: seeds.length <= MOST_SEEDS ? seeds : [] });
 
-/** Reads a particle from an address, where anything may stand; null if it is none. @param {string} text */
+/** Reads a particle from an address; null if the text is invalid. @param {string} text */
 export function unpackParticle(text) {
   const raw = unpacked(text);
   if (!isVector(raw?.place) || !(Number(raw.radius) > 0) || !Array.isArray(raw.seeds)) return null;

@@ -1,13 +1,13 @@
-/** The theme, which the browser keeps: what was chosen on the page is that of the lesson, too. */
+/** The theme, which the browser stores: a choice on the page holds in the lesson, too. */
 import { kept } from './remembered.js';
 
 export const { text: keptTheme, keep: keepTheme } = kept('theme');
 
-/** Gives the document a theme; all others than these two are that of the system. @param {string} theme */
+/** Sets the document's theme; any value other than these two means the system's. @param {string} theme */
 export function showTheme(theme) {
   if (theme === 'light' || theme === 'dark') document.documentElement.dataset.theme = theme;
   else delete document.documentElement.dataset.theme;
 }
 
-// From the first frame on.
+// Before the first frame.
 showTheme(keptTheme);

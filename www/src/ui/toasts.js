@@ -1,4 +1,4 @@
-/** Shows notices as short lines. They disappear after a while, unless they need an answer. */
+/** Shows notices as short lines, which disappear after a while unless they need an answer. */
 
 import { button } from './button.js';
 import { fill, h, live } from './dom.js';
@@ -16,7 +16,7 @@ const STAY_MS = 6000;
  * @param {(notice: Notice) => boolean} isTold whether another part of the page already shows it
  */
 export function mountToasts(host, engine, isTold) {
-  // Screen readers announce what is added to a region that is already there: at once in an alert, else in a pause.
+  // Screen readers announce what is added to an existing region: at once in an alert, in a pause in a status.
   const alerts = host.appendChild(h('div', { role: 'alert' }));
   const status = host.appendChild(h('div', { role: 'status' }));
   /** @type {Map<string, { element: HTMLElement, timer: number }>} */
@@ -32,7 +32,7 @@ export function mountToasts(host, engine, isTold) {
     if (engine.notice.peek()?.id === id) engine.dismissNotice();
   }
 
-  /** Takes a notice away later, but not while it is looked at. @param {string} id @param {HTMLElement} element */
+  /** Removes a notice later, but not while the user looks at it. @param {string} id @param {HTMLElement} element */
   const count = (id, element) =>
     window.setTimeout(() => {
       const entry = shown.get(id);
@@ -69,7 +69,7 @@ export function mountToasts(host, engine, isTold) {
   return toast;
 }
 
-/** The text of a notice, and what can be done. @param {Notice} notice @param {() => void} remove */
+/** The text of a notice, and its action. @param {Notice} notice @param {() => void} remove */
 function partsOf({ text, details, action }, remove) {
   const act = () => {
     remove();

@@ -1,4 +1,4 @@
-/** The bar that shows how far a run has come. */
+/** The progress bar of a run. */
 import { computed } from '@preact/signals-core';
 import { h } from './dom.js';
 
@@ -6,7 +6,7 @@ import { h } from './dom.js';
 
 /** Creates the progress bar. @param {Engine} engine */
 export function createTrack({ busy, reveal, progress, loading }) {
-  // The bar follows the reveal of the picture while it lasts, and otherwise the run and its report.
+  // The bar follows the reveal of the picture while it lasts, otherwise the run and its report.
   const works = computed(() => busy.value || progress.value.phase === 'quality');
   const growing = computed(() => works.value || reveal.value !== null || loading.value !== null);
   const fraction = computed(() => {

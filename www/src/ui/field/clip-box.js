@@ -1,4 +1,4 @@
-/** The controls of the clip box, one row per axis, and the line about a surface that it cuts. */
+/** The controls of the clip box, one row per axis, and the message about a surface that it cuts. */
 import { computed } from '@preact/signals-core';
 import { cutOf, enlarge, wholePeriods } from '../box.js';
 import { button } from '../button.js';
@@ -11,14 +11,14 @@ import { numberBox, showNumber } from '../number.js';
 const AXES = /** @type {const} */ (['x', 'y', 'z']);
 /** Step of the number boxes, as a share of the box's side. It is rounded to a power of ten. */
 const STEP_SHARE = 0.02;
-/** The numbers of whole periods that are offered. */
+/** The offered numbers of whole periods. */
 const TIMES = [1, 2, 3];
 
 /** @param {Engine} engine */
 export function createClipBox(engine) {
   const bounds = computed(() => engine.state.value.bounds ?? engine.field.value?.bounds ?? null);
   const own = computed(() => engine.state.value.bounds !== null || engine.state.value.settings.box_mode === 'fixed');
-  /** Whether the surface has a box of its own, as those of the gallery and of points have. */
+  /** Whether the surface comes with a box, as those of the gallery and of points do. */
   const kept = computed(() => engine.field.value?.surface !== null || engine.field.value?.model !== null);
   const size = () => {
     const size = bounds.value?.max
@@ -64,7 +64,7 @@ export function createClipBox(engine) {
 }
 
 /**
- * Creates the choice of a box of whole periods, which a periodic surface has.
+ * Creates the buttons for a box of whole periods, for a periodic surface.
  * @param {Engine} engine @param {ReadonlySignal<Bounds | null>} bounds
  */
 function createPeriods(engine, bounds) {
@@ -123,9 +123,9 @@ function createNumber(engine, bounds, { i, end, name }) {
   return input;
 }
 
-/** Creates the line about a surface that the box cuts, with what to do. @param {Engine} engine */
+/** Creates the message about a surface that the box cuts, with the remedy. @param {Engine} engine */
 function createCut(engine) {
-  // During a run the line of the previous one stays.
+  // During a run the previous message stays.
   let last = cutOf(engine.report.peek(), engine.enlargement());
   const cut = computed(() => {
     if (engine.empty.value) last = null;

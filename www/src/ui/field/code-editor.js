@@ -1,6 +1,6 @@
 /**
- * The full formula editor, which is loaded on the first focus. It has syntax colours, bracket pairs, completion with
- * help, and an underline at an error. It is in a shadow root, where constructed style sheets replace inline styles.
+ * The full formula editor, loaded on the first focus: syntax colours, bracket pairs, completion with help, and errors
+ * underlined. It is in a shadow root, where constructed style sheets replace inline styles.
  */
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
@@ -93,7 +93,7 @@ function tokens(functions) {
   );
 }
 
-/** Returns the completions for what a formula defines. @param {string} formula */
+/** Returns the completions for the names that a formula defines. @param {string} formula */
 const definedIn = (formula) =>
   [...formula.matchAll(/(?<=^|[;\n])\s*([\p{L}_][\p{L}\p{N}_]*)\s*(\([^()]*\))?\s*=/gu)].map(([, name, list]) => ({
     label: name,
@@ -142,7 +142,7 @@ const theme = EditorView.theme({
   '.cm-scroller': { font: 'inherit', lineHeight: '1.25rem', overflow: 'auto' },
   '.cm-content': { padding: '0.4375rem 0', minHeight: '2.125rem', caretColor: 'var(--ink)' },
   '.cm-line': { padding: '0 0.5rem' },
-  // A line breaks between names, not in one.
+  // Lines break between names, not within one.
   '.cm-number, .cm-function, .cm-name': { whiteSpace: 'nowrap' },
   '.cm-number': { color: 'var(--ink-2)' },
   '.cm-axis': { color: 'var(--ink)' },
@@ -180,8 +180,8 @@ const theme = EditorView.theme({
 });
 
 /**
- * Text typed over a selection is put in its place here. If the browser did it, Chromium would keep the look of an
- * underlined name by an inline style, which the content security policy forbids.
+ * Replaces a selection by the typed text. If the browser did it, Chromium would keep the look of an underlined name by
+ * an inline style, which the content security policy forbids.
  */
 const typedOver = EditorView.domEventHandlers({
   beforeinput(event, view) {
@@ -197,7 +197,7 @@ const typedOver = EditorView.domEventHandlers({
   },
 });
 
-/** Whether a text was pasted over all of the one before. @param {Transaction} transaction */
+/** Whether a paste replaced the whole text. @param {Transaction} transaction */
 function isWhole(transaction) {
   let isAll = false;
   transaction.changes.iterChangedRanges((from, to) => {
@@ -235,7 +235,7 @@ export function createCodeEditor({ text, selection, functions, names, change, fi
         theme,
         typedOver,
         EditorView.lineWrapping,
-        // Enter takes a name that is being completed, else the formula; Shift Enter begins a new line.
+        // Enter accepts a completion, else samples the formula; Shift Enter begins a new line.
         keymap.of([
           ...closeBracketsKeymap,
           ...completionKeymap,

@@ -22,11 +22,11 @@ import {
 /** @import { Bounds, CuttingPlane, Engine, ReadonlySignal, Signal } from '../../engine/types.js' */
 
 /**
- * The present plane, and the axis that it lies across, if there is one.
+ * The present plane, and the axis to which it is perpendicular, if any.
  * @typedef {{ plane: ReadonlySignal<CuttingPlane | null>, axis: ReadonlySignal<ReturnType<typeof axisOf>> }} Cut
  */
 
-/** Places of the position slider on the way through the box. */
+/** Number of steps of the position slider. */
 const PLACES = 400;
 const DEGREES = 180 / Math.PI;
 
@@ -34,7 +34,7 @@ const DEGREES = 180 / Math.PI;
 export function createCuttingPlane(engine) {
   const bounds = computed(() => engine.state.value.bounds ?? engine.field.value?.bounds ?? null);
   const plane = computed(() => engine.state.value.plane);
-  /** Whether the direction was chosen freely, so that passing through an axis makes no difference. */
+  /** Whether the user chose a free direction, which stays free even while it is parallel to an axis. */
   const free = signal(false);
   const axis = computed(() => (plane.value && !free.value ? axisOf(plane.value.normal) : null));
 
@@ -42,7 +42,7 @@ export function createCuttingPlane(engine) {
     const now = plane.peek();
     if (now) engine.setPlane({ normal: along([0, 0, 0], now.normal, -1), offset: -now.offset });
   };
-  /** Cuts through the middle of the box and hides the side that is turned to the viewer. @param {string} value */
+  /** Cuts through the centre of the box and hides the side towards the viewer. @param {string} value */
   function choose(value) {
     const now = bounds.peek();
     free.value = value === 'free';
@@ -84,7 +84,7 @@ export function createCuttingPlane(engine) {
       ),
     ),
   );
-  // A plane that comes with a link or by undo is not left unexplained.
+  // A plane from a link or from undo opens the section that explains it.
   live(details, () => {
     if (plane.value) details.open = true;
   });
@@ -96,8 +96,8 @@ const action = (label, text, press) =>
   explain(button({ class: 'small', press }, label), () => ({ title: label, text }));
 
 /**
- * Creates the slider for the position: the coordinate where the plane lies across an axis, else the distance from the
- * origin along the normal.
+ * Creates the position slider: the coordinate of a plane perpendicular to an axis, else the distance from the origin
+ * along the normal.
  * @param {Engine} engine
  * @param {Cut & { bounds: ReadonlySignal<Bounds | null> }} cut
  */
@@ -144,7 +144,7 @@ function createAngles(engine, { plane, axis, free }) {
     free.value = true;
     const { azimuth, elevation } = { ...angles.peek(), ...patch };
     const normal = directionOf(azimuth, elevation);
-    // The plane turns about the place on it that is nearest to the middle of the box.
+    // The plane turns about its point nearest to the centre of the box.
     const centre = centreOf(box);
     const lift = now.offset - dot(now.normal, centre);
     engine.setPlane({ normal, offset: dot(normal, centre) + lift }, { live: isLive });

@@ -55,7 +55,7 @@ export function mountDrop(engine, toast) {
       event.stopPropagation();
       const { file, beside } = ofFiles([...dataTransfer.files]);
       if (!file) return;
-      // Of an image the voxels may be beside the header.
+      // The voxels of an image may be in a file of their own.
       if (beside.length > 1 || (beside.length === 1 && !/\.(hdr|nhdr|mhd)$/i.test(file.name)))
         toast({ id: 'files', kind: 'info', text: `One file makes one surface: ${file.name} was taken.` });
       void engine.openFile(file, beside);

@@ -42,12 +42,12 @@ export function factsOf({ condition, residual_mean, residual_95, residual_max, n
   ];
 }
 
-/** Says in plain words what the surface is. @param {ModelInfo} info */
+/** Describes the surface in plain words. @param {ModelInfo} info */
 export const plainOf = ({ points, residual_mean }) =>
   `A smooth surface through ${formatCount(points)} points, on average ${formatSignificant(residual_mean * 100, 2)} % of their size away from them.`;
 
 /**
- * Says what f is, and what its points and centres are.
+ * Says what f is, and how many points and centres it has.
  * @param {ModelInfo} info
  */
 export function fittedOf({ points, centres }) {

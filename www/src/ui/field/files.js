@@ -15,11 +15,11 @@ const listOf = (words) => (words.length < 2 ? words.join('') : `${words.slice(0,
 export const MESH_FORMATS = 'STL, OBJ, PLY, OFF or GLB';
 /** The formats of three-dimensional images. */
 export const IMAGE_FORMATS = 'NIfTI, NRRD, NPY, MetaImage, cube or TIFF';
-/** Extensions of headers of images, whose voxels may be in a file beside them. */
+/** Extensions of image headers, whose voxels may be in another file. */
 const HEADERS = /\.(hdr|nhdr|mhd|nii|nii\.gz)$/i;
 
 /**
- * The file of several that makes a surface, which is a header if there is one, and those beside it.
+ * Returns the file that makes the surface, which is a header if there is one, and the others.
  * @param {File[]} files
  */
 export function ofFiles(files) {
@@ -27,7 +27,7 @@ export function ofFiles(files) {
   return { file, beside: files.filter((other) => other !== file) };
 }
 
-/** Returns the kinds of files that can be opened, in words. @param {Engine} engine */
+/** Returns the formats of files that can be opened, in words. @param {Engine} engine */
 export const filesOf = ({ description }) =>
   `${listOf(FORMATS)}, up to ${Math.round((description.value?.limits.file_bytes ?? 0) / 1e6)}\u202fMB`;
 

@@ -46,7 +46,7 @@ export function createFormula(engine, description, replace) {
   return section;
 }
 
-/** The present editor, and the error in its text. */
+/** The present editor, and the message about an error in its text. */
 class FormulaInput {
   #engine;
   #description;
@@ -55,7 +55,7 @@ class FormulaInput {
   #upgrading;
   #fault;
 
-  /** The text that the error is of: beside a later one it says nothing until that was read, too. */
+  /** The text to which the error belongs: it is not shown for a later text that has not been read yet. */
   #faulty;
   #change;
 
@@ -88,7 +88,7 @@ class FormulaInput {
       focused: () => this.#upgrade(),
     });
     this.holder.append(this.editor.element);
-    // The caret may also go from one editor to the other.
+    // The focus may also move from one editor to the other.
     this.holder.addEventListener('focusout', ({ relatedTarget }) => {
       if (!(relatedTarget instanceof Node && this.holder.contains(relatedTarget))) this.#finish();
     });
@@ -149,7 +149,7 @@ class FormulaInput {
     const { editor, holder, error } = this;
     const fault = this.#fault.peek();
     const text = editor.text();
-    // Words are a formula, too, but one that nobody means: only what has been read counts.
+    // Words count as a formula while being typed; names are looked up only once the text has been read.
     const isRead = !this.#engine.typing.peek();
     const meant = isRead ? meantBy(this.#description, text) : [];
     const view = describeFault(text, text === this.#faulty ? fault : null, meant);
@@ -205,12 +205,12 @@ const excerptElement = ({ excerpt }) =>
     excerpt.after,
   );
 
-/** A formula that is too wide is made smaller down to this share of its size, and scrolls beyond. */
+/** Least size of a formula that is too wide, as a share of its size; beyond that it scrolls. */
 const LEAST_SIZE = 0.7;
 
-/** Shows the formula as mathematics, and says so where it is not the one in the editor. @param {Engine} engine */
+/** Shows the formula as mathematics, and says so if it is not the one in the editor. @param {Engine} engine */
 function createPreview(engine) {
-  // As text it is the same while a parameter changes its value, and is not drawn and measured again.
+  // Compared as text, it stays equal while a parameter changes, so it is not drawn and measured again.
   const written = computed(() => JSON.stringify(engine.field.value?.mathml ?? null));
   const math = computed(() => /** @type {MathNode | null} */ (JSON.parse(written.value)));
   // While the formula cannot be read, the last readable one stays, with a caption that says so.
@@ -228,7 +228,7 @@ function createPreview(engine) {
     'aria-describedby': () => isLast.value && id,
     tabindex: 0,
   });
-  // A formula is split into parts only if it is too long for one line, and made smaller if a part still is.
+  // A formula is split into parts only if it is too wide for one line, and made smaller if a part still is.
   const fit = () => {
     const tree = math.peek();
     preview.classList.remove('long');
@@ -244,7 +244,7 @@ function createPreview(engine) {
     const { scrollWidth, clientWidth } = preview;
     if (scrollWidth > clientWidth) preview.style.fontSize = `${Math.max(LEAST_SIZE, clientWidth / scrollWidth)}em`;
   };
-  // It is measured with the next frame, which lays the page out anyway.
+  // Measured in the next frame, whose layout is computed anyway.
   let asked = 0;
   live(preview, () => {
     void math.value;
@@ -261,11 +261,11 @@ function createPreview(engine) {
 }
 
 /**
- * Creates the line that says which coordinates a formula does without, and what surface that makes.
+ * Creates the line that names the coordinates missing from a formula, and the kind of surface that follows.
  * @param {Engine} engine
  */
 function createUnchanging(engine) {
-  // While particles are on their way, what they were last is said.
+  // While the sampler runs, the last result stays.
   let kind = '';
   return h('p', { class: 'quiet unchanging' }, () => {
     const { field, fieldError, empty, busy, report, columns } = engine;

@@ -1,4 +1,4 @@
-/** Shows the functions that a formula may use, from the core's description. */
+/** Shows the functions available in a formula, from the core's description. */
 
 import { button } from '../button.js';
 import { createDialog } from '../dialog.js';

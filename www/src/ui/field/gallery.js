@@ -1,6 +1,6 @@
 /**
  * The gallery: one picture per surface, as radio buttons, in groups of which one is shown. The last group holds the
- * models from points and the file opened last. A search looks through all groups.
+ * models from points and the last opened file. A search covers all groups.
  */
 
 import { batch, computed, signal } from '@preact/signals-core';
@@ -23,7 +23,7 @@ import { filesOf, IMAGE_FORMATS, MESH_FORMATS, ofFiles } from './files.js';
 const PICTURE_PX = 160;
 /** Name of the group of models and files. */
 const POINTS = 'Points';
-/** Name of all groups, through which a search looks. */
+/** Name that the group menu shows while a search covers all groups. */
 const ALL = 'All';
 
 /**
@@ -80,7 +80,7 @@ export function createGallery(engine, description, replace) {
       shown.value = groups.find(({ entries }) => entries.some((entry) => entry.id === id))?.name ?? POINTS;
       query.value = '';
     });
-    // In a small window the group is a strip. It alone scrolls to the chosen tile, and not the panel around it.
+    // In a small window the group is a strip. Only the strip scrolls to the chosen tile, not the panel around it.
     const tile = gallery.querySelector(`[data-surface="${id}"]`);
     const strip = tile?.closest('.tiles');
     if (!tile || !strip) return;
@@ -99,7 +99,7 @@ export function createGallery(engine, description, replace) {
  *   search finds it
  */
 function createTile(engine, { words, chosen, choose }, { group, entry: { id, name, story, credit }, face, isFound }) {
-  // When the present surface is chosen again, its original formula is restored.
+  // Choosing the present surface again restores its original formula.
   const again = () => {
     if (engine.state.peek().surface === id && engine.field.peek()?.surface !== id) choose(id);
   };
@@ -138,7 +138,7 @@ function pictured(engine, finding, group, entry) {
 }
 
 /**
- * The file opened last has its own tile, by which the user can return to it.
+ * Creates the tile of the last opened file, by which the user can return to it.
  * @param {Engine} engine @param {Finding} finding
  */
 function createFileTile(engine, finding) {
@@ -169,7 +169,7 @@ function groupsOf({ surfaces, models }) {
 }
 
 /**
- * Returns whether all words begin a word that is said of a surface, or are in its formula.
+ * Returns whether each word begins a word of a surface's texts or is contained in its formula.
  * @param {Entry} entry @param {readonly string[]} words
  */
 function has({ name, story, formula = '', words: others = '' }, words) {
@@ -177,7 +177,7 @@ function has({ name, story, formula = '', words: others = '' }, words) {
   return words.every((word) => begins(said, word) || formula.toLowerCase().includes(word));
 }
 
-/** Whether a word of a text begins with a word. @param {string} text @param {string} word */
+/** Whether some word of a text begins with `word`. @param {string} text @param {string} word */
 function begins(text, word) {
   for (let at = text.indexOf(word); at >= 0; at = text.indexOf(word, at + 1))
     if (!/[\p{L}\p{N}]/u.test(text[at - 1] ?? '')) return true;
@@ -185,7 +185,7 @@ function begins(text, word) {
 }
 
 /**
- * Creates the menu of the groups. While a search looks through all of them, it says so.
+ * Creates the menu of groups. During a search it shows that all are searched.
  * @param {{ name: string }[]} sections
  * @param {{ shown: Signal<string>, query: Signal<string>, words: ReadonlySignal<readonly string[]> }} how
  */

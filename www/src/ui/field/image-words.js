@@ -3,7 +3,7 @@ import { formatCount, formatSignificant } from '../format.js';
 
 /** @import { ImageFacts, ImageInfo } from '../../engine/types.js' */
 
-/** Says what an image is made of. @param {ImageFacts} facts */
+/** Describes the voxels of an image. @param {ImageFacts} facts */
 export function voxelsOf({ size, spacing, voxel_type, range }) {
   const steps = spacing.map((length) => formatSignificant(length)).join(' × ');
   const [min, max] = range.map((value) => formatSignificant(value, 5));
@@ -25,7 +25,7 @@ export function filteredOf({ smooth, is_smooth_chosen, label, noise }) {
 }
 
 /**
- * The bars of a histogram as a path. Their heights are logarithms: most voxels are of the background.
+ * Returns a histogram's bars as a path. Their heights are logarithms, because most voxels are background.
  * @param {number[]} counts
  */
 export function barsOf(counts) {

@@ -1,6 +1,6 @@
 /**
- * What stands below the formula for the surface of a three-dimensional image: its facts, the choice between grey values
- * and labels, the list of labels, and which voxels are inside.
+ * The section below the formula for a three-dimensional image: its facts, the choice between grey values and labels,
+ * the list of labels, and which voxels are inside.
  */
 import { computed } from '@preact/signals-core';
 import { h, s, uniqueId } from '../dom.js';
@@ -86,13 +86,13 @@ function createLabels(engine, labels, info) {
   );
 }
 
-/** What another label keeps. @param {Engine} engine @returns {Record<string, number>} */
+/** The parameters that choosing another label keeps. @param {Engine} engine @returns {Record<string, number>} */
 function kept(engine) {
   const { smooth } = engine.state.peek().parameters;
   return smooth === undefined ? {} : { smooth };
 }
 
-/** Creates the choice of the side. @param {Engine} engine */
+/** Creates the choice of the inner side. @param {Engine} engine */
 function createSide(engine) {
   return createSegmented({
     name: 'Inside',
@@ -109,7 +109,7 @@ function createSide(engine) {
 }
 
 /**
- * Creates the histogram above the slider of the iso value. The bars on the inner side are in the colour of the slider.
+ * Creates the histogram above the slider of the iso value. The bars on the inner side have the colour of the slider.
  * @param {Engine} engine @param {() => number} iso
  */
 export function createHistogram(engine, iso) {

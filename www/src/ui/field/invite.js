@@ -1,6 +1,6 @@
 /**
- * Has the first slider move a little by itself, once, after the first surface of a first visit has grown: the surface
- * follows, and a word says what may be dragged. Any press or key ends it.
+ * Moves the first slider a little, once, after the first surface of a first visit is sampled: the surface follows, and
+ * a hint says what can be dragged. Any press or key ends it.
  */
 import { computed, effect, signal } from '@preact/signals-core';
 import { remembered } from '../remembered.js';
@@ -8,15 +8,15 @@ import { snap } from '../scale.js';
 
 /** @import { Engine, Parameter, ReadonlySignal, Signal } from '../../engine/types.js' */
 
-/** Time of the motion, there and back, and how far it goes, as a share of the range. */
+/** Duration of the motion, there and back, and its length as a share of the range. */
 const MOTION_MS = 1800;
 const SHARE = 0.14;
-/** Pause before it, in which the surface stands still. */
+/** Pause before the motion. */
 const PAUSE_MS = 1200;
 
 /**
- * Returns the name of the parameter that is to be dragged; null before, once anything was touched,
- * and where the surface has no such parameter.
+ * Returns the name of the parameter that the hint invites to drag; null before, after any input, and if the surface has
+ * no such parameter.
  * @param {Engine} engine
  * @returns {ReadonlySignal<string | null>}
  */
@@ -37,13 +37,13 @@ export function inviteToDrag(engine) {
     if (!hasGrown || !has.value || !first || Object.keys(engine.state.value.parameters).length > 0) return;
     const timer = setTimeout(() => {
       end();
-      // Whoever has touched anything needs no invitation.
+      // A user who has touched anything needs no invitation.
       if (was.peek() || names.peek()[0] !== first.name) return;
       was.value = true;
       invited.value = first.name;
       move(engine, first);
     }, PAUSE_MS);
-    // A run in the pause has the pause begin again.
+    // A run during the pause restarts the pause.
     return () => clearTimeout(timer);
   });
   const touch = () => {
@@ -61,7 +61,7 @@ export function inviteToDrag(engine) {
     const go = (/** @type {number} */ nowMs) => {
       const share = (nowMs - fromMs) / MOTION_MS;
       if (shown.peek() === null || share >= 1) return of.resetParameter(name);
-      // As where a parameter is played, a run that takes longer than a frame is waited for.
+      // As when a parameter is played, a run longer than a frame delays the next step.
       if (!of.busy.peek()) {
         const place = value + way * Math.sin(Math.PI * Math.max(0, share)) ** 2;
         of.setParameter(name, snap({ min, max, step }, place), { live: true });

@@ -29,7 +29,7 @@ export function createLoading(engine) {
     createBar(engine.loading),
   );
   live(working, () => {
-    // Below the gallery it may be out of sight.
+    // It may be out of sight below the gallery.
     if (name.value !== null) queueMicrotask(() => working.scrollIntoView({ block: 'nearest' }));
     // The Cancel button disappears, so the focus moves to the button that opens a file.
     if (name.value === null && document.activeElement === cancel) opener().focus();
@@ -48,7 +48,7 @@ export function createLoading(engine) {
   return [working, createRefusal(engine.loadingError), spoken];
 }
 
-/** Creates the bar and the line about the stage. What was shown last stays. @param {Engine['loading']} present */
+/** Creates the bar and the line about the stage. They keep their last content. @param {Engine['loading']} present */
 function createBar(present) {
   let last = present.peek();
   const loading = computed(() => {
@@ -74,7 +74,7 @@ function createBar(present) {
   return [bar, stage];
 }
 
-/** Creates what is said after a refusal. @param {Engine['loadingError']} error */
+/** Creates the message after a refusal. @param {Engine['loadingError']} error */
 function createRefusal(error) {
   const told = computed(() => error.value && describeLoadingError(error.value));
   const refusal = h(

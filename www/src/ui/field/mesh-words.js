@@ -1,9 +1,9 @@
-/** Describes a triangle mesh that is sampled anew in words, and how far the new mesh is from it. */
+/** Describes in words a triangle mesh that is remeshed, and the distance of the new mesh from it. */
 import { formatCount, formatShare, formatSignificant, plural } from '../format.js';
 
 /** @import { MeshChange, MeshInfo } from '../../engine/types.js' */
 
-/** Says what a mesh is made of. @param {MeshInfo} info */
+/** Describes the parts of a mesh. @param {MeshInfo} info */
 export function facesOf({ faces, vertices, pieces, border_edges, fan_edges }) {
   const parts = [
     `${plural(faces, 'face')} with ${plural(vertices, 'vertex', 'vertices')} in ${plural(pieces, 'piece')}.`,
@@ -17,7 +17,7 @@ export function facesOf({ faces, vertices, pieces, border_edges, fan_edges }) {
 /** Says what was mended; empty if nothing was. @param {MeshInfo} info */
 export const mendedOf = ({ mended }) => (mended.length > 0 ? `Mended: ${mended.join(', ')}.` : '');
 
-/** Says what the mesh was taken for. @param {MeshInfo} info */
+/** Says what kind of object the mesh is treated as. @param {MeshInfo} info */
 export function madeOf({ part, scan }) {
   if (part) {
     const faded = part.faded > 0 ? ` ${plural(part.faded, 'sharp edge')} that end within a patch will be rounded.` : '';
@@ -30,11 +30,11 @@ export function madeOf({ part, scan }) {
   return `A scan, without sharp edges: its distance on a grid of ${size.map(formatCount).join(' × ')} cells of ${formatSignificant(cell)}${blur}.`;
 }
 
-/** Share of the diagonal up to which a distance is one of rounding. */
+/** Distances up to this share of the diagonal are rounding errors. */
 const ROUNDING = 1e-9;
 
 /**
- * The rows that say how far the new mesh is from the old one, with what they mean.
+ * Returns the rows about the distance of the new mesh from the old one, with explanations.
  * @param {MeshChange} change
  */
 export function changeOf({ diagonal, to_new, to_old, edges, volume, area }) {

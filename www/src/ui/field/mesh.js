@@ -1,6 +1,6 @@
 /**
- * What stands below the formula for the surface of a triangle mesh: what was mended, what it is taken for, which edges
- * stay sharp, and how far the new mesh is from the old one.
+ * The section below the formula for a triangle mesh: what was mended, what it is treated as, which edges stay sharp,
+ * and the distance of the new mesh from the old one.
  */
 import { computed } from '@preact/signals-core';
 import { term } from '../button.js';
@@ -14,7 +14,7 @@ import { createWayBack } from './way-back.js';
 
 /** @import { Description, Engine } from '../../engine/types.js' */
 
-/** Angle of edges that is chosen first, in degrees. */
+/** Angle of edges that is preset, in degrees. */
 const USUAL_ANGLE = 30;
 
 /**
@@ -52,7 +52,7 @@ function row({ label, value, help }) {
   return [h('dt', null, name), h('dd', null, value)];
 }
 
-/** Creates the choice of the edges that stay sharp. @param {Engine} engine */
+/** Creates the choice of edges that stay sharp. @param {Engine} engine */
 function createEdges(engine) {
   const value = () => {
     const { edges } = engine.state.value.parameters;

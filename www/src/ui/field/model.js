@@ -1,6 +1,6 @@
 /**
- * What stands below the formula for a surface from points: its facts, how well it fits, and a
- * button that returns to the formula before it.
+ * The section below the formula for a surface from points: its facts, how well it fits, and a button that returns to
+ * the formula before it.
  */
 import { computed } from '@preact/signals-core';
 import { term } from '../button.js';
@@ -70,7 +70,7 @@ function createCentres(engine, { limits }, model) {
     scale,
     value: usual,
     describe: formatCount,
-    // Solving takes seconds, so it waits for the end of a drag.
+    // Solving takes seconds, so it starts at the end of a drag.
     change: (value, live) => {
       if (!live) engine.setCentres(value);
     },
@@ -85,7 +85,7 @@ function createCentres(engine, { limits }, model) {
   }));
   live(row, () => {
     const info = model.value;
-    // While another number is being solved for, the slider shows that one.
+    // While the model is solved for another number, the slider shows that number.
     const asked = engine.loading.value && engine.state.value.centres;
     if (!info) return;
     const max = Math.min(limits.centres_max, info.points);

@@ -39,7 +39,7 @@ export function mountField(body, engine, description, shared) {
     createSolid(engine, description, shared.print),
     createCuttingPlane(engine),
   );
-  // What follows the sliders waits for them, so that nothing jumps.
+  // What follows the sliders appears together with them, so that nothing jumps.
   const waits = () => [engine.field, engine.fieldError, engine.notice, engine.loading].every((own) => !own.value);
   live(body, () => body.classList.toggle('waiting', waits()));
 }

@@ -1,4 +1,4 @@
-/** Creates a slider, a number box and a button that plays it for every parameter of the formula. */
+/** Creates a slider, a number box and a Play button for every parameter of the formula. */
 import { batch, computed } from '@preact/signals-core';
 import { canGrab, isBareModel } from '../../engine/pulls.js';
 import { button } from '../button.js';
@@ -16,7 +16,7 @@ import { inviteToDrag } from './invite.js';
  * @import { Motion, Pins } from '../types.js'
  */
 
-/** Speeds at which a parameter is played, as multiples of the usual one. */
+/** Speeds of playing, as multiples of the usual one. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 
 /** @param {number} n */
@@ -39,7 +39,7 @@ export function createParameters(engine, { motion, pins }) {
       class: 'section parameters',
       hidden: () =>
         (!canGrab(engine.field.value) && !engine.field.value?.parameters.length) ||
-        // Where f does not change with x, y or z, no slider makes a surface.
+        // If f does not depend on x, y or z, no slider makes a surface.
         (engine.empty.value && engine.progress.value.stop_reason === 'constant'),
     },
     h(
@@ -63,7 +63,7 @@ export function createParameters(engine, { motion, pins }) {
   );
 }
 
-/** Creates the switch by which the surface itself is dragged. @param {Engine} engine @param {Pins} pins */
+/** Creates the switch for dragging the surface itself. @param {Engine} engine @param {Pins} pins */
 function grabbing(engine, pins) {
   const isOn = computed(() => pins.value !== null);
   const press = () => {
@@ -76,7 +76,7 @@ function grabbing(engine, pins) {
   }));
 }
 
-/** The names of the sliders that were moved: what is chosen of a file besides stays. @param {Engine} engine */
+/** The names of the sliders that were moved; other choices for a file are not reset. @param {Engine} engine */
 const changedOf = ({ state, field }) =>
   Object.keys(state.value.parameters).filter(
     (name) =>
@@ -106,7 +106,7 @@ function createRow(engine, { name, label, value, min, max, step }, { values, mot
   const title = label && label !== name ? label : `Parameter ${name}`;
   const answered = computed(() => engine.field.value?.parameters.find((parameter) => parameter.name === name));
   const slider = createSlider({
-    // The accessible name includes the symbol, because a sampling setting may have the same label, such as the radius.
+    // The accessible name includes the symbol, because a setting may have the same label, such as the radius.
     name: label && label !== name ? `${label} ${name}` : title,
     scale: { min, max, step },
     value: () => values.value[name] ?? answered.value?.value ?? value,
@@ -138,7 +138,7 @@ function createRow(engine, { name, label, value, min, max, step }, { values, mot
   return row;
 }
 
-/** Creates the choice of how a parameter is played, which is shown while one is. @param {Motion} motion */
+/** Creates the choice of how a parameter is played, shown during play. @param {Motion} motion */
 function createCourse({ playing, course, speed }) {
   return h(
     'div',

@@ -1,6 +1,6 @@
 /**
- * The choices of the solid that is made of a surface: closed by the clip box, a sheet of some thickness. Of a model
- * from points: whether its surface goes on beyond them.
+ * The choices for the solid made of a surface: closed by the clip box, or a sheet of some thickness. For a model from
+ * points: whether its surface continues beyond them.
  */
 import { computed, signal } from '@preact/signals-core';
 import { h, live, marked, uniqueId } from '../dom.js';
@@ -31,7 +31,7 @@ export function createSolid(engine, { settings }, print) {
     return { title: label, text: help };
   };
   const isClosed = () => chosen.value[FACES] === CLOSED;
-  /** A switch between a value of a setting and its default. */
+  /** A switch between one value of a setting and the default. */
   const check = (/** @type {string} */ name, /** @type {string} */ value, /** @type {string} */ text) =>
     h(
       'label',
@@ -77,7 +77,7 @@ export function createSolid(engine, { settings }, print) {
   }
   live(box, () => {
     const given = chosen.value[THICKNESS];
-    // What is typed is taken as it is; a number from elsewhere is shown with six digits, and stays what it is.
+    // Typed text stays as it is; a number from elsewhere is shown with six digits but keeps its value.
     box.value = typeof given === 'number' ? String(Number(given.toPrecision(6)) || '') : (given ?? '');
     wrong.value = '';
   });

@@ -1,4 +1,4 @@
-/** The choice of what a mesh file is taken for: its surface, or points. */
+/** The choice whether a mesh file is treated as a surface or as points. */
 import { FILE_SURFACE } from '../../engine/constants.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';

@@ -1,4 +1,4 @@
-/** The formula in a native text area, which is available before the full editor has loaded and where it cannot load. */
+/** The formula in a native text area, used before the full editor has loaded and if it cannot load. */
 import { h } from '../dom.js';
 
 /** @import { Change, Editor } from './types.js' */
@@ -8,7 +8,7 @@ import { h } from '../dom.js';
  * @returns {Editor}
  */
 export function createTextarea({ text, change, finish, focused }) {
-  /** Whether a text is pasted over all of the one before. */
+  /** Whether a paste replaces the whole text. */
   let whole = false;
   const area = h('textarea', {
     class: 'code',

@@ -1,19 +1,19 @@
-/** Finds out what surface it is that goes straight along an axis: its formula does without that coordinate. */
+/** Classifies a surface that is straight along an axis, since its formula does not contain that coordinate. */
 import { dot, triple } from '../../engine/vector.js';
 
 /** @import { Columns } from '../../engine/types.js' */
 
-/** More directions than these are those of a curved surface. */
+/** Largest number of directions of normals for planes; more mean a curved surface. */
 const MOST_PLANES = 8;
-/** Cosine of normals that are those of one plane: particles lie on the surface to single precision. */
+/** Cosine above which normals count as parallel: positions are in single precision. */
 const PARALLEL = 0.999999;
 
 /**
- * A plane, planes or a cylinder, by the particles.
+ * Returns from the particles whether the surface is a plane, planes or a cylinder.
  * @param {Pick<Columns, 'positions' | 'normals' | 'radii' | 'count'>} columns
  */
 export function kindOf({ positions, normals, radii, count }) {
-  /** Normals that differ, and how far from the origin the first plane of each is. @type {[number[], number][]} */
+  /** Distinct normals, each with the distance of its first plane from the origin. @type {[number[], number][]} */
   const found = [];
   let isOne = true;
   for (let i = 0; i < count; i += 1) {

@@ -1,4 +1,4 @@
-/** The button that returns from the surface of a file or a model to the formula before it. */
+/** The button that returns from a file's or model's surface to the formula before it. */
 import { givenOf } from '../../engine/given.js';
 import { button } from '../button.js';
 import { live } from '../dom.js';

@@ -1,6 +1,6 @@
 /**
- * Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded
- * when asked for.
+ * Charts of the generation levels and the relaxation, above the timeline. A press or a drag on one moves the timeline
+ * there. Loaded on demand.
  */
 
 import { computed, signal } from '@preact/signals-core';
@@ -22,7 +22,7 @@ import { BINS, degreeBins, hexagonalCount, NEIGHBOURS, nearestBins, nearestOver,
  */
 
 /**
- * Distances of the particles that are shown to their nearest, over 2r, and which they are in words.
+ * Distances of the shown particles to their nearest neighbours, over 2r, and a description of these particles.
  * @typedef {{ nearest: ArrayLike<number>, words: string } | null} Spread
  */
 
@@ -34,7 +34,7 @@ export async function createCharts(engine, player) {
   const shown = signal(true);
   const moves = computed(() => {
     const { past, positions, radii } = engine.columns;
-    // With many particles only the first positions are kept. The way from those to the last is not one step.
+    // With many particles only the first positions are kept. The move from those to the last is not one step.
     const steps = engine.report.value?.energy?.length ?? 0;
     return kept.value > 1 || steps === 2 ? movesOf(past, positions, radii) : [];
   });
@@ -99,8 +99,8 @@ export async function createCharts(engine, player) {
 }
 
 /**
- * The particles beside those of a perfect lattice at 2r: there are more where neighbours are nearer than that, and
- * fewer where holes are left.
+ * Compares the number of particles with that of a perfect lattice of spacing 2r: neighbours that are nearer give more,
+ * and holes give fewer.
  * @param {Report | null} report
  * @param {boolean} adaptive
  */
@@ -113,7 +113,7 @@ function boundWords(report, adaptive) {
 }
 
 /**
- * The distances of what is shown: up to a level as it was placed, before a relaxation step, or at the end of the run.
+ * The distances of the shown particles: as placed up to a level, before a relaxation step, or at the end of the run.
  * @param {Columns} columns @param {{ upTo: number | null, step: number | null }} place
  * @returns {Spread}
  */
@@ -231,7 +231,7 @@ function fateChart(table, at) {
 /** @param {readonly number[]} energy @param {number | null} at @returns {Chart} */
 function energyChart(energy, at) {
   const [from, to] = [energy[0], energy.at(-1)];
-  // Differences are small for the values: the scale begins at the least.
+  // The differences are small compared with the values, so the scale begins at the least value.
   const floor = Math.min(...energy);
   const of = energy.length > 1 ? `from ${formatSignificant(from, 3)} to ${formatSignificant(to, 3)}` : '';
   return {
@@ -269,7 +269,7 @@ const NOTHING = `Not known. The positions of each step are kept of up to ${forma
 
 /**
  * @param {() => Chart} read
- * @param {((place: number) => void) | null} seek  null where the places are none of the timeline
+ * @param {((place: number) => void) | null} seek  null if its places are not those of the timeline
  */
 function chartOf(read, seek) {
   const chart = computed(read);
@@ -319,8 +319,8 @@ function chartOf(read, seek) {
 }
 
 /**
- * The ends of a scale: the largest value at the right, where a curve that falls leaves room, and a least that is not 0
- * at the left.
+ * The ends of a scale: the largest value at the right, where a falling curve leaves room, and a least value other than
+ * 0 at the left.
  * @param {Chart} chart
  */
 const scaleTexts = (chart) => [

@@ -1,10 +1,10 @@
-/** The figures of the charts: fates of each level, energy and largest move of each relaxation step. */
+/** The figures of the charts: fates of each level, energy and longest move of each relaxation step. */
 import { FATES } from '../../engine/columns.js';
 import { FATE } from '../../engine/core-numbers.js';
 
 /** @import { LevelTable } from './types.js' */
 
-/** Fates of the proposed children in the order in which they are stacked, with their names. */
+/** Fates of proposed children in the order of stacking, with their names. */
 const STACKED = /** @type {const} */ ([
   ['added', 'added'],
   ['matched', 'met another'],

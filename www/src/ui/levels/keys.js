@@ -4,11 +4,11 @@
 
 /** Keys that move along the timeline; a presenter's clicker sends the pages. @type {Record<string, To>} */
 const MOVES = { PageUp: -1, PageDown: 1, Home: 'first', End: 'last', ArrowLeft: -1, ArrowRight: 1 };
-/** Keys that do so on the range alone. @type {Record<string, To>} */
+/** Further keys that do so while the range has the focus. @type {Record<string, To>} */
 const UPRIGHT = { ArrowUp: 1, ArrowDown: -1 };
 
 /**
- * Returns where a key leads; null for one that means nothing here.
+ * Returns where a key moves the timeline; null for a key without a meaning here.
  * @param {Pick<KeyboardEvent, 'key' | 'shiftKey' | 'altKey' | 'ctrlKey' | 'metaKey'>} event @param {boolean} onRange
  * @returns {To | null}
  */
@@ -18,9 +18,9 @@ export function moveOf({ key, shiftKey, altKey, ctrlKey, metaKey }, onRange) {
   return onRange && Object.hasOwn(UPRIGHT, key) ? UPRIGHT[key] : null;
 }
 
-/** Controls that have uses of their own for these keys. */
+/** Controls that use these keys themselves. */
 const BUSY = 'input:not([type=range]), select, textarea, [contenteditable], .code-host, [role=menu] *';
-/** The part of the page that belongs to the timeline, and those where nothing else is chosen. */
+/** The timeline's part of the page, and the parts where nothing that uses keys has the focus. */
 const OWN = '.panel-levels';
 const NEUTRAL = 'body, .canvas-host';
 

@@ -1,6 +1,6 @@
 /**
- * The places of the timeline: the generation levels, then the relaxation steps, then the particles as they are.
- * The place is part of the state; the viewer draws it.
+ * The places of the timeline: the generation levels, then the relaxation steps, then the present particles. The place
+ * is part of the state; the viewer draws it.
  */
 import { computed, effect, signal } from '@preact/signals-core';
 import { formatCount, plural } from '../format.js';
@@ -11,11 +11,11 @@ import { levelTable, shortOf } from './table.js';
  * @import { Track } from '../types.js'
  */
 
-/** Height of the bar of a relaxation step whose moves are not known, as a share of the highest level. */
+/** Height of a relaxation step's bar while its moves are unknown, as a share of the highest level. */
 const STEP_HEIGHT = 0.12;
 
 /**
- * Returns the number of relaxation steps that can be looked at, and at least 1: the place behind the levels.
+ * Returns the number of places after the levels: the relaxation steps that can be shown, and at least 1.
  * @param {number} kept  positions that were kept, the first as placed
  */
 export const stepsOf = (kept) => Math.max(1, kept);
@@ -32,7 +32,7 @@ export function drawnAt(at, { last, steps }) {
 }
 
 /**
- * Returns the place of what is drawn.
+ * Returns the place on the timeline of what is drawn.
  * @param {{ level: number | null, step: number | null }} drawn @param {{ last: number, steps: number }} about
  */
 export function trackPlace({ level, step }, { last, steps }) {
@@ -40,12 +40,12 @@ export function trackPlace({ level, step }, { last, steps }) {
   return step !== null && step < steps ? last + Math.max(1, step) : last + steps;
 }
 
-/** Cosine of the angle to the eye above which a particle is seen. */
+/** Cosine of the angle to the eye above which a particle is visible. */
 const SEEN = 0.1;
 
 /**
- * Returns whether every particle up to a level faces away from the camera, so that the faint surface still to come
- * would hide them all.
+ * Returns whether every particle up to a level faces away from the camera, so that the faint rest of the surface would
+ * hide them all.
  * @param {Pick<Columns, 'count' | 'levels' | 'normals'>} particles
  * @param {Angles} camera @param {number} level
  */
@@ -61,7 +61,7 @@ export function isOutOfSight({ count, levels, normals }, { yaw, pitch }, level) 
 /** @param {Engine} engine */
 export function createLevels(engine) {
   const table = signal(levelTable(engine.columns));
-  /** Positions kept of the relaxation. */
+  /** Number of positions kept of the relaxation. */
   const kept = signal(engine.columns.past.length);
   watch(engine, () => {
     table.value = levelTable(engine.columns);
@@ -74,9 +74,9 @@ export function createLevels(engine) {
   const at = computed(() => trackPlace({ level: level.value, step: step.value }, about.value));
   const last = computed(() => about.value.last + about.value.steps);
   const whole = computed(() => at.value === last.value);
-  /** The newest level that is drawn. */
+  /** The newest level drawn. */
   const newest = computed(() => Math.min(level.value ?? Infinity, table.value.last));
-  /** The relaxation step that is drawn, null where it is none in particular. */
+  /** The relaxation step that is drawn; null if the place is not a single step. */
   const relaxed = computed(() => (whole.value || level.value !== null ? null : at.value - about.value.last));
 
   /** @param {number} place */
@@ -87,7 +87,7 @@ export function createLevels(engine) {
     engine.setView(to);
   }
   /**
-   * Turns the seed to the eye: on the way back from the whole, and where nothing of a level would be seen.
+   * Turns the seed towards the eye, on return from the whole run or if nothing of a level would be visible.
    * @param {number} to
    * @param {boolean} [isBack]
    */

@@ -1,4 +1,4 @@
-/** Moves along the timeline, manually and by playback. Where it stands is part of the state. */
+/** Moves along the timeline, by hand or by playback. The place is part of the state. */
 import { effect, signal } from '@preact/signals-core';
 
 /**
@@ -14,7 +14,7 @@ export class Player {
     this.levels = levels;
     this.playing = signal(false);
     this.speed = 1;
-    // Playback ends where a run begins or ends.
+    // Playback ends when a run begins or ends.
     effect(() => {
       void engine.busy.value;
       this.#pause();

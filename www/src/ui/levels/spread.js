@@ -1,24 +1,21 @@
-/** The evenness of the shown particles: distances to the nearest, and numbers of neighbours. */
+/** The evenness of the shown particles: nearest distances, and numbers of neighbours. */
 import { between, createGrid } from '../neighbours.js';
 
 /**
- * Distances over 2r that the histogram spans, with its number of bins; what is beyond counts in the last one on its
- * side.
+ * Distances over 2r that the histogram spans, and its number of bins; values outside count in the first or last bin.
  */
 export const SPAN = /** @type {const} */ ([0.6, 1.2]);
 export const BINS = 24;
-/** Numbers of neighbours that have a bar; those beyond count in the last one on their side. */
+/** Numbers of neighbours that have a bar; others count in the first or last bar. */
 export const NEIGHBOURS = /** @type {const} */ ([3, 9]);
 
-/**
- * Side of the cells in which neighbours are looked for, over the mean radius, and how many cells around are looked at.
- */
+/** Side of the cells for the search of neighbours, over the mean radius, and the largest number of rings searched. */
 const CELL = 2.2;
 const MOST_RINGS = 8;
 
 /**
- * Returns the distance of each of some particles to the nearest of them, over the diameter of its own disc; infinite
- * where there is none within eight cells.
+ * Returns the distance of each chosen particle to the nearest other one, over the diameter of its disc; infinite if
+ * there is none within eight cells.
  * @param {ArrayLike<number>} positions
  * @param {ArrayLike<number>} radii
  * @param {readonly number[]} chosen  their numbers
@@ -49,8 +46,8 @@ export function nearestBins(nearest) {
 }
 
 /**
- * Counts the particles by their number of neighbours, with the share of six among all; null where no number is known.
- * Duplicates have none, and no bar.
+ * Counts the particles by their number of neighbours, with the share that have six; null if no number is known.
+ * Duplicates, which have none, get no bar.
  * @param {ArrayLike<number> | null} valence
  */
 export function degreeBins(valence) {
@@ -66,7 +63,7 @@ export function degreeBins(valence) {
 }
 
 /**
- * Returns how many particles of one radius a perfect hexagonal lattice would have on an area: A/(2√3 r²).
+ * Returns the number of particles of one radius in a perfect hexagonal lattice on an area: A/(2√3 r²).
  * @param {number} area @param {number} radius
  */
 export const hexagonalCount = (area, radius) => area / (2 * Math.sqrt(3) * radius ** 2);

@@ -1,4 +1,4 @@
-/** The numbers of particles and slot fates of each generation level, and the words that describe them. */
+/** The numbers of particles and slot fates of each generation level, and texts about them. */
 import { FATES } from '../../engine/columns.js';
 import { FATE } from '../../engine/core-numbers.js';
 import { formatCount, plural } from '../format.js';
@@ -20,7 +20,7 @@ export function levelTable({ count, tally, adaptive, lastLevel: last, curves }) 
   return { count, last, fresh, total, seeds, fates: tally.fates.slice(), adaptive, curves };
 }
 
-/** Fates of the children that were not placed, in the order of the description. */
+/** Fates of children that were not added, in the order of the description. */
 const REST = /** @type {const} */ ([
   ['matched', 'met an existing particle', 'met existing particles'],
   ['outside', 'fell outside the box', 'fell outside the box'],
@@ -29,7 +29,7 @@ const REST = /** @type {const} */ ([
   ['capped', 'was over the limit', 'were over the limit'],
 ]);
 
-/** The words for `outside` where patches meet: no child is placed beyond its own. */
+/** The text for `outside` on surfaces of several patches: a child beyond its own patch is not placed. */
 const BEYOND = 'fell off the patch or outside the box';
 
 /**
@@ -49,10 +49,9 @@ export const shortOf = ({ last, fresh, total }, level) =>
 const levelOf = (level, last) => `Level ${formatCount(level)} of ${formatCount(last)}`;
 
 /**
- * Describes a level: its particles, and the fates of the children proposed.
+ * Describes a level: its particles, and the fates of the proposed children.
  * @param {LevelTable} table @param {number} level
- * @param {number | null} relaxSteps  number of relaxation steps since; null if it is drawn as it was placed, before
- *   them
+ * @param {number | null} relaxSteps  number of relaxation steps since; null if it is drawn as placed, before them
  */
 export function describeLevel(table, level, relaxSteps) {
   const { last, fresh, total, seeds, fates, curves } = table;

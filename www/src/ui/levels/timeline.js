@@ -19,7 +19,7 @@ import { describeLevel } from './table.js';
  * @import { Levels, TimelineOptions, To, Told } from './types.js'
  */
 
-/** Speeds of the playback; 1 is ten levels a second. */
+/** Speeds of playback; 1 is ten levels per second. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 
 /**
@@ -52,7 +52,7 @@ export function createTimeline(body, engine, { told, say }) {
 }
 
 /**
- * Returns the caption of the present place; null where it is the caption of the whole run.
+ * Returns the caption of the present place; null if the whole run is shown, which has its own caption.
  * @param {Engine} engine
  * @param {Levels} levels
  * @returns {Told | null}
@@ -121,7 +121,7 @@ function rangeOf(player) {
   return range;
 }
 
-/** Takes the keys that are meant for the timeline. @param {Player} player @param {HTMLInputElement} range */
+/** Handles the keys of the timeline. @param {Player} player @param {HTMLInputElement} range */
 function takeKeys(player, range) {
   addEventListener('keydown', (event) => {
     if (!isMeant(event)) return;
@@ -137,7 +137,7 @@ function takeKeys(player, range) {
 }
 
 /**
- * Turns to the level that a link names, once the surface is there, and says what a link names and is not there.
+ * Goes to the level in a link once the surface is there, and says if the link's level does not exist.
  * @param {HTMLElement} body @param {Engine} engine @param {{ levels: Levels, say: (text: string) => void }} parts
  */
 function restore(body, engine, { levels, say }) {
@@ -150,7 +150,7 @@ function restore(body, engine, { levels, say }) {
     return !engine.busy.value && engine.loading.value === null && phase === 'done' && particles > 0;
   });
   live(body, () => {
-    // A link that is read begins a run at once.
+    // Reading a link starts a run at once.
     if (rests.value && levels.table.value.count > 0) queueMicrotask(() => rests.peek() && go());
   });
 
@@ -190,7 +190,7 @@ function speedOf(player) {
 }
 
 /**
- * Creates the button that shows the charts above the timeline, which are loaded when they are first asked for.
+ * Creates the button that shows the charts above the timeline. They are loaded on first use.
  * @param {HTMLElement} body @param {Engine} engine @param {Player} player @param {(text: string) => void} say
  */
 function chartsOf(body, engine, player, say) {
@@ -260,7 +260,7 @@ const GAP = 0.1;
 const LEAST = 0.06;
 
 /**
- * Draws the bars as one path, which is stretched to the available width.
+ * Draws the bars as one path, stretched to the available width.
  * @param {Bars} bars @param {number} places
  */
 function drawBars({ heights, widths }, places) {

@@ -1,11 +1,11 @@
-/** Finds the open borders of a mesh in the picture. */
+/** Shows the open borders of a mesh in the picture. */
 import { triple } from '../../engine/vector.js';
 import { formatCount, plural } from '../format.js';
 
 /** @import { Columns, MeshAnswer, Place, Vec3 } from '../../engine/types.js' */
 
 /**
- * Returns how the picture shows an open border of a mesh: outlined, from the side to which its particles face.
+ * Returns what the picture shows of an open border: its outline, seen from the side that its particles face.
  * @param {MeshAnswer} mesh
  * @param {number} index
  * @param {Columns} columns

@@ -1,4 +1,4 @@
-/** The button that makes a mesh, and opens the panel with the verdict on it. The panel comes with the first press. */
+/** The button that makes a mesh and opens the panel with the verdict. The panel is loaded on the first press. */
 import { untracked } from '@preact/signals-core';
 import { button } from '../button.js';
 import { h, live, query } from '../dom.js';
@@ -19,7 +19,7 @@ export function createMeshButton(engine, toast, print) {
   /** @type {Promise<HTMLElement> | null} */
   let panel = null;
   const methodOf = () => engine.state.value.settings.method;
-  /** The method that is set while the panel is open. @type {ReturnType<typeof methodOf>} */
+  /** The method at the time of opening. @type {ReturnType<typeof methodOf>} */
   let method;
   const load = async () => {
     const [{ createMeshPanel }] = await Promise.all([import('./panel.js'), loadSheet(sheet)]);
@@ -38,13 +38,13 @@ export function createMeshButton(engine, toast, print) {
       event.stopPropagation();
       close();
     });
-    // The event before it, which comes at once: nobody sees a mesh without its panel.
+    // `beforetoggle` is sent at once, so the mesh is never seen without its panel.
     holder.addEventListener('beforetoggle', ({ newState }) => {
       if (newState === 'closed') untracked(engine.leaveMesh);
     });
     document.body.append(holder);
-    // A mesh is of no use beside a formula with a mistake; the caret stays in the formula. Who chooses another method
-    // wants to see it.
+    // A mesh is of no use beside a formula with an error; the caret stays in the formula. Choosing another method
+    // closes the panel, so that its effect is seen.
     live(holder, () => {
       if (engine.fieldError.value || methodOf() !== method) holder.hidePopover();
     });
@@ -58,12 +58,12 @@ export function createMeshButton(engine, toast, print) {
       const holder = await panel;
       Object.assign(holder.style, { bottom: '', maxHeight: '' });
       if (!holder.matches(':popover-open')) holder.showPopover();
-      // Its right end is that of the button, so that it does not reach over the report, and it is above the levels.
+      // Its right end is aligned with the button, so that it does not cover the report, and it is above the levels.
       const { right, top, bottom } = element.getBoundingClientRect();
       const levels = query(document, '.panel-levels').getBoundingClientRect();
       const from = levels.height > 0 ? Math.min(top, levels.top) : top;
       place(holder, new DOMRect(right - holder.offsetWidth, from, holder.offsetWidth, bottom - from), 'above');
-      // Its lower end stays where it is when its content grows.
+      // Its lower end stays fixed when its content grows.
       const end = holder.getBoundingClientRect().bottom;
       Object.assign(holder.style, { top: 'auto', bottom: `${innerHeight - end}px`, maxHeight: `${end - MARGIN_PX}px` });
       query(holder, '.save').focus();

@@ -1,7 +1,6 @@
 /**
- * The panel of a mesh: what it is for, the verdict on it, what is set for the surface, its size in
- * a file, and how that
- * is saved.
+ * The panel of a mesh: its purpose, the verdict, the settings kept for the surface, its size in a file, and how to save
+ * it.
  */
 
 import { computed, signal } from '@preact/signals-core';
@@ -30,7 +29,7 @@ const USES = [
   { value: 'view', label: 'For viewers' },
 ];
 /**
- * File formats for each use, with what is in them; the usual one first.
+ * File formats for each use, with a note on their contents; the default first.
  * @type {Record<Use, [MeshFormat, string][]>}
  */
 const FORMATS = {
@@ -46,11 +45,11 @@ const FORMATS = {
     ['3mf', 'Triangles with their unit'],
   ],
 };
-/** Units by their symbols; without one numbers stay what they are. */
+/** Symbols of units; without a unit, numbers are not converted. */
 const UNITS = ['', 'mm', 'cm', 'm', 'in'];
 const AXES = ['z', 'y', 'x'];
 
-/** Whether the surface is none of a formula. @param {Engine} engine */
+/** Whether the surface comes from a file or a model. @param {Engine} engine */
 const isOfFile = ({ field: { value: field } }) => givenOf(field) !== null;
 
 /**
@@ -141,7 +140,7 @@ export function createMeshPanel(engine, { toast, close, print }) {
 }
 
 /**
- * What helps where a mesh cannot be printed; nothing where it can.
+ * Returns advice for a mesh that cannot be printed; empty for one that can.
  * @param {MeshAnswer | null} mesh
  * @param {boolean} isOfPoints  whether it is of a surface through points, which takes no wall and no box
  */
@@ -205,7 +204,7 @@ function printLines(engine, { print, toast, made }) {
     box.focus();
     toast({ id: 'size', kind: 'warn', text });
   };
-  /** A length that was typed, in millimetres unless it has another unit. @param {HTMLInputElement} box */
+  /** Reads a typed length, in millimetres unless it has another unit. @param {HTMLInputElement} box */
   const read = async ({ value }) =>
     value.trim() === '' ? 0 : (millimetresOf(value) ?? (await engine.readNumber(value)));
   /**
@@ -218,7 +217,7 @@ function printLines(engine, { print, toast, made }) {
     box.value = text;
     box.dataset.shown = text;
   };
-  /** What is in a box is no longer being typed. @param {HTMLInputElement} box */
+  /** Marks the content of a box as no longer being typed. @param {HTMLInputElement} box */
   const taken = (box) => {
     box.dataset.shown = box.value;
   };
@@ -228,7 +227,7 @@ function printLines(engine, { print, toast, made }) {
   size.addEventListener('change', async () => {
     const { value } = size;
     const given = await read(size);
-    // Something else has been typed meanwhile.
+    // The text has changed meanwhile.
     if (size.value !== value) return;
     if (given !== null && given > 0 && given < Infinity) print.sizeMm.value = given;
     else refuse(size, 'The size is a positive length, such as 40 or 1.5 in.');
@@ -236,7 +235,7 @@ function printLines(engine, { print, toast, made }) {
     showSize();
   });
   const wall = numberBox({ name: 'Wall in millimetres', placeholder: 'none' });
-  /** The wall of the last mesh, as long as the next one is made. */
+  /** The wall of the last mesh, shown until the next mesh is made. */
   let last = { text: '', placeholder: 'none' };
   const shown = computed(() => {
     if (!made.value) return last;
@@ -277,7 +276,7 @@ function viewLines(engine) {
   const factor = signal(1);
   const unit = signal('');
   const scale = numberBox({ name: 'Length of a unit of the formula', value: '1' });
-  /** The length in the box; null if it is none. */
+  /** The length in the box; null if it is invalid. */
   const read = async () => {
     const given = await engine.readNumber(scale.value);
     if (given === null || !(given > 0 && given < Infinity)) {
@@ -299,7 +298,7 @@ function viewLines(engine) {
   return { elements: line('1 unit =', scale, units), read, ofFile: () => ({ scale: factor.value, unit: unit.value }) };
 }
 
-/** Creates a line for everything that is set for the surface, with what ends it. @param {Engine} engine */
+/** Creates a line for each thing kept for the surface, with a button to remove it. @param {Engine} engine */
 function keptLines(engine) {
   const kept = computed(() => keptOf(engine));
   const texts = computed(() => JSON.stringify(kept.value.map(({ text }) => text)));
@@ -318,7 +317,7 @@ function keptLines(engine) {
 }
 
 /**
- * Creates the button that leaves the loose chips out.
+ * Creates the button that leaves out loose chips.
  * @param {Engine} engine
  * @param {{ readonly value: MeshAnswer | null }} made
  */
@@ -331,7 +330,7 @@ function leavingOut(engine, made) {
 }
 
 /**
- * Creates the button that shows the open borders, one after the other.
+ * Creates the button that shows the open borders in turn.
  * @param {Engine} engine
  * @param {{ readonly value: MeshAnswer | null }} made
  */

@@ -7,13 +7,13 @@ import { formatCount, formatSignificant, plural } from '../format.js';
  * @import { Context, Parts, Sheet } from './types.js'
  */
 
-/** Height of the letters as a share of the shorter side of the picture, and its least in pixels. */
+/** Height of the letters as a share of the picture's shorter side, and its minimum in pixels. */
 const LETTER_SHARE = 0.022;
 const LEAST_LETTER_PX = 11;
-/** Distance of what is drawn from the edges, and width of a scale, in heights of a letter. */
+/** Margin of the drawing, and width of a scale, in heights of a letter. */
 const MARGIN_EM = 1.4;
 const SCALE_EM = 13;
-/** Distance of two lines. */
+/** Distance between lines. */
 const LINE_EM = 1.45;
 
 /**
@@ -45,7 +45,7 @@ function write({ context, em, parts }, text, x, y, style, align = 'left') {
   context.fillText(text, x, y);
 }
 
-/** Breaks a line between words where it is too long. @param {Sheet} sheet @param {string} text @param {number} width */
+/** Breaks a line between words if it is too long. @param {Sheet} sheet @param {string} text @param {number} width */
 function wrapped({ context, em }, text, width) {
   context.font = `${em}px system-ui, sans-serif`;
   /** @type {string[]} */
@@ -80,7 +80,7 @@ function drawLegend(sheet, legend) {
 }
 
 /**
- * Draws the colours of a scale, blended.
+ * Draws the colours of a scale as a gradient.
  * @param {Sheet} sheet
  * @param {Legend} legend
  * @param {number} y
@@ -106,7 +106,7 @@ function dot({ context, em }, colour, x, y) {
   context.fill();
 }
 
-/** Returns what stands at the ends of a scale. @param {Legend} legend @returns {[string, string]} */
+/** Returns the texts at the ends of a scale. @param {Legend} legend @returns {[string, string]} */
 export function endsOf({ kind, range }) {
   if (!range) return ['', ''];
   if (range[0] === range[1]) return [`${formatSignificant(range[0])} everywhere`, ''];
@@ -115,10 +115,10 @@ export function endsOf({ kind, range }) {
     : [formatSignificant(range[0]), formatSignificant(range[1])];
 }
 
-/** Longest formula that a caption repeats. */
+/** Longest formula in a caption. */
 const LONGEST_FORMULA = 120;
 
-/** Returns the lines of the caption: what is seen, its formula, and whose data it is. @param {Engine} engine */
+/** Returns the lines of the caption: the surface, its formula, and the credit for data. @param {Engine} engine */
 export function captionOf(engine) {
   const field = engine.field.peek();
   const about = engine.description.peek();

@@ -22,7 +22,7 @@ import { FILM_SIZES, sizesOf, sizeWords } from './sizes.js';
 /** Lengths of a film, in seconds. */
 const LENGTHS_S = [2, 4, 8, 12];
 const USUAL_S = 4;
-/** Value of the choice by which the film shows what the user does, and of the turntable. */
+/** Values of two choices: a film of what the user does, and the turntable. */
 const FREE = 'free';
 const TURN = 'turn';
 
@@ -65,7 +65,7 @@ function choice(label, select) {
 /** @param {readonly SizeEntry[]} entries */
 const sizeChoices = (entries) => entries.map((entry) => ({ value: entry.id, label: sizeWords(entry) }));
 
-/** The entry that a select stands at. @param {readonly SizeEntry[]} entries @param {HTMLSelectElement} select */
+/** The selected entry. @param {readonly SizeEntry[]} entries @param {HTMLSelectElement} select */
 const chosen = (entries, { value }) => entries.find(({ id }) => id === value) ?? entries[0];
 
 /** @param {string} text @param {() => void} press @param {string} [look] */
@@ -86,7 +86,7 @@ function pictureSection({ engine, page, parts, transparent, close }) {
       const context = canvas.getContext('2d');
       if (!context) throw new Error('no canvas');
       const image = await engine.picture({ ...size, transparent: transparent.checked });
-      // A device may draw less than it is asked for.
+      // A device may draw fewer pixels than requested.
       Object.assign(canvas, { width: image.width, height: image.height });
       await drawOn(
         { ...wishOf(engine, { width: image.width, height: image.height }), parts },
@@ -200,6 +200,6 @@ function filmSection({ engine, page, parts, transparent, close }) {
   ];
 }
 
-/** Returns the colours of writing on the picture. @param {Engine} engine */
+/** Returns the text colours for the picture. @param {Engine} engine */
 const coloursOf = (engine) =>
   engine.theme.peek() === 'dark' ? { ink: '#eceef2', quiet: '#aeb4be' } : { ink: '#14171d', quiet: '#4a505b' };

@@ -1,6 +1,6 @@
 /**
- * Makes films and sequences of the picture: each moment is sampled and drawn completely, however long that takes, and
- * shown for a thirtieth of a second. Only a film of what the user does is recorded in the time in which it plays.
+ * Makes films and picture sequences: each frame is sampled and drawn completely, however long that takes, and shown for
+ * a thirtieth of a second. Only a film of what the user does is recorded in real time.
  */
 import { effect } from '@preact/signals-core';
 import { placeAt, valueAt } from '../motion.js';
@@ -17,17 +17,16 @@ const FRAMES_PER_S = 30;
 /** Bits of a film per pixel and second. Fine dots need more than a filmed scene. */
 const BITS_PER_PX_S = 5;
 /**
- * The codec of an MP4 film, which all programs play, and those of a WebM film, where the browser does not encode it.
+ * Codecs of an MP4 film, which all programs play, and of a WebM film, for browsers that cannot encode the former.
  * @type {{ mp4: VideoCodec[], webm: VideoCodec[] }}
  */
 const CODECS = { mp4: ['avc'], webm: ['vp9', 'av1', 'vp8'] };
 
-/** Whether this browser encodes films. Which kinds it encodes is known when one is made. */
+/** Whether this browser encodes films. The formats are only known when one is made. */
 export const canFilm = () => typeof VideoEncoder !== 'undefined';
 
 /**
- * Returns a function that brings the surface into its pose at a share of the recording, 0 to 1, and one that takes it
- * back.
+ * Returns a function that puts the surface into its pose at a share of the recording, 0 to 1, and one that restores it.
  * @param {Engine} engine @param {Subject} subject
  * @returns {{ at: (share: number) => Promise<void>, back: () => void }}
  */
@@ -70,7 +69,7 @@ const sampled = (engine) =>
 const nextFrame = () => new Promise((resolve) => requestAnimationFrame(() => resolve()));
 
 /**
- * Draws the present moment on a canvas.
+ * Draws the present picture on a canvas.
  * @param {Wish} wish @param {Context} context @param {boolean} [transparent]
  */
 export async function drawOn({ engine, size, parts }, context, transparent = false) {
@@ -79,8 +78,8 @@ export async function drawOn({ engine, size, parts }, context, transparent = fal
 }
 
 /**
- * Makes a film of so many seconds, or of what the user does until it is stopped. Stopped before its end, it keeps what
- * it has.
+ * Makes a film of so many seconds, or of what the user does until it is stopped. If stopped early, it keeps what is
+ * recorded.
  * @param {Wish} wish
  * @throws if the browser encodes no film of that size
  */
@@ -101,7 +100,7 @@ export async function makeFilm(wish) {
       await at(i / count);
       await drawOn(wish, context);
       await source.add(timeS, 1 / FRAMES_PER_S);
-      // A page that is drawn from time to time shows how far it is, and can be stopped.
+      // Yielding to the page lets it show the progress and react to Stop.
       await nextFrame();
       while (isFree && !signal.aborted && passed() < timeS + 1 / FRAMES_PER_S) await nextFrame();
     }
@@ -114,7 +113,7 @@ export async function makeFilm(wish) {
 }
 
 /**
- * Returns a file of the kind that this browser encodes, and what takes the pictures of a canvas into it.
+ * Returns a file of a format that this browser encodes, and the source that adds pictures of a canvas to it.
  * @param {OffscreenCanvas} canvas
  */
 async function encoderOf(canvas) {
@@ -143,9 +142,9 @@ function sheetOf({ width, height }, settings) {
 }
 
 /**
- * Makes single pictures, each of a finished run, and packs them into a ZIP file without compressing them again.
+ * Makes single pictures, each of a finished run, and packs them uncompressed into a ZIP file.
  * @param {Wish & { transparent: boolean }} wish
- * @returns null if it was given up
+ * @returns null if it was cancelled
  */
 export async function makeSequence(wish) {
   const { engine, size, subject, signal, tell, transparent, seconds } = wish;
@@ -169,7 +168,7 @@ export async function makeSequence(wish) {
       const file = new ZipPassThrough(`frame-${String(i + 1).padStart(4, '0')}.png`);
       zip.add(file);
       file.push(new Uint8Array(await png.arrayBuffer()), true);
-      // A page that is drawn from time to time shows how far it is, and can be stopped.
+      // Yielding to the page lets it show the progress and react to Stop.
       await nextFrame();
     }
     zip.end();

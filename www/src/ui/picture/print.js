@@ -1,4 +1,4 @@
-/** Puts picture, formula and figures on a clean sheet, and prints it. */
+/** Lays out picture, formula and figures on a clean sheet, and prints it. */
 import { givenOf } from '../../engine/given.js';
 import { isBareModel } from '../../engine/pulls.js';
 import { h } from '../dom.js';
@@ -7,11 +7,11 @@ import { captionOf } from './compose.js';
 
 /** @import { Engine } from '../../engine/types.js' */
 
-/** Pixels of the printed picture: some 300 to an inch. */
+/** Pixels of the printed picture: about 300 per inch. */
 const PICTURE_PX = { width: 2100, height: 1500 };
 
 /**
- * Prints the sheet. It is made first, because the picture has to be read back from the graphics device.
+ * Prints the sheet. It is made first, because the picture must be read back from the graphics device.
  * @param {Engine} engine
  */
 export async function printPage(engine) {
@@ -59,7 +59,7 @@ async function createSheet(engine) {
   return { element, free: () => URL.revokeObjectURL(url) };
 }
 
-/** Returns a copy of a part of the page, without what is hidden in it. @param {string} part */
+/** Returns a copy of a part of the page, without its hidden elements. @param {string} part */
 function copyOf(part) {
   const copy = /** @type {HTMLElement | undefined} */ (document.querySelector(part)?.cloneNode(true));
   for (const hidden of copy?.querySelectorAll('[hidden]') ?? []) hidden.remove();

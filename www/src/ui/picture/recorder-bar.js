@@ -1,4 +1,4 @@
-/** The bar that is shown while a film is recorded: for how long, or how much of it, and a button that ends it. */
+/** The bar shown while a film is recorded: its time or its progress, and a button to stop. */
 import { button } from '../button.js';
 import { h } from '../dom.js';
 import { formatShare } from '../format.js';

@@ -1,14 +1,14 @@
-/** The sizes that a picture can be saved in. */
+/** The sizes in which a picture can be saved. */
 
 /** @import { Size } from './types.js' */
 
 /** Side of the square picture, in pixels. */
 const SQUARE_PX = 2048;
-/** Side beyond which a browser may not give a canvas. */
+/** Side up to which every browser makes a canvas. */
 const LARGEST_PX = 8192;
 
 /**
- * Returns the sizes on offer.
+ * Returns the offered sizes.
  * @param {Size & { ratio: number }} screen  of the window in CSS pixels, and device pixels in one of them
  * @returns {{ id: string, label: string, size: Size }[]}
  */
@@ -25,7 +25,7 @@ export function sizesOf({ width, height, ratio }) {
   ];
 }
 
-/** Sizes of a film. Its sides are even, as its encoders need. */
+/** Sizes of a film. Their sides are even, as encoders need. */
 export const FILM_SIZES = [
   { id: 'hd', label: 'HD', size: { width: 1280, height: 720 } },
   { id: 'full-hd', label: 'Full HD', size: { width: 1920, height: 1080 } },

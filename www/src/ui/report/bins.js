@@ -26,7 +26,7 @@ export function coarsen({ min, max, bins }, rows) {
 }
 
 /**
- * Removes the empty bins at both ends, but keeps the value `keep` and a small margin.
+ * Removes the empty bins at both ends, but keeps a small margin and the bin of the value `keep`.
  * @param {Bins} histogram
  * @param {number} keep
  * @returns {Bins}

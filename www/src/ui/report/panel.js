@@ -30,7 +30,7 @@ const DRAWN = {
  * @param {HTMLElement} title  beside which a folded report says how it is
  */
 export function mountReport(body, engine, description, title) {
-  // During a run the figures of the previous one stay, dimmed, but for the count, which is that of the caption.
+  // During a run the previous figures stay, dimmed, except for the count, which is that of the caption.
   let kept = engine.report.peek();
   const report = computed(() => {
     kept = engine.empty.value ? null : (engine.report.value ?? kept);
@@ -45,7 +45,7 @@ export function mountReport(body, engine, description, title) {
   const warningsOf = (/** @type {boolean} */ areNotes) =>
     computed(() => report.value?.warnings.filter(({ severity }) => (severity === 'note') === areNotes) ?? []);
   const [told, noted] = [warningsOf(false), warningsOf(true)];
-  // What a folded report says.
+  // The line of a folded report.
   const line = h('span', { class: 'quiet now' }, () => {
     if (!report.value) return '';
     const particles = plural(counted.value || report.value.count, 'particle');
@@ -55,7 +55,7 @@ export function mountReport(body, engine, description, title) {
   const items = (/** @type {typeof told} */ list) => () =>
     list.value.map(({ message }) => createWarning(withCounts(message)));
   const warnings = h('ul', { class: 'section warnings', hidden: () => told.value.length === 0 }, items(told));
-  // What the surface always does, and nobody needs to do anything about.
+  // Properties of the surface itself, which need no action.
   const notes = h(
     'details',
     { class: 'section notes quiet', hidden: () => noted.value.length === 0 },
@@ -64,7 +64,7 @@ export function mountReport(body, engine, description, title) {
   );
   const isWhoseHidden = () => report.value === null || whoseFigures(engine) === '';
   const whose = h('p', { class: 'quiet whose', hidden: isWhoseHidden }, () => whoseFigures(engine));
-  // The mesh's own figures, and the line under the picture, count the border.
+  // The mesh's own figures, and the line under the picture, include the border.
   const excluded = computed(() => report.value?.quality?.boundary_excluded ?? 0);
   const border = h(
     'p',
@@ -125,7 +125,7 @@ function createPlain(report, counted) {
   );
 }
 
-/** Folds the rest of the report, until it is opened; the page keeps the choice. @param {...HTMLElement} parts */
+/** Creates the fold of the rest of the report; its state is stored. @param {...HTMLElement} parts */
 function createAll(...parts) {
   const isOpen = remembered('report', false);
   return h(
@@ -145,7 +145,7 @@ function createAll(...parts) {
 }
 
 /**
- * Says that the figures are those of all particles, where the picture shows fewer or earlier ones.
+ * Says that the figures are those of all particles, if the picture shows fewer or earlier ones.
  * @param {Engine} engine
  */
 function whoseFigures(engine) {
@@ -155,12 +155,12 @@ function whoseFigures(engine) {
 }
 
 /**
- * Returns a function that shows the places of a figure in the picture, one after the other.
+ * Returns a function that shows the places of a figure in the picture, one per press.
  * @param {Engine} engine
  * @param {HTMLElement} said  tells assistive technology what is shown
  */
 function createShow(engine, said) {
-  /** The list that was shown last, and the next place of it. @type {{ list: unknown, next: number }} */
+  /** The list shown last, and the index of its next place. @type {{ list: unknown, next: number }} */
   let last = { list: null, next: 0 };
   return (/** @type {ReportRow} */ row) => {
     const list = listOf(engine.report.peek(), row.places);

@@ -21,7 +21,7 @@ export function listOf(report, path) {
 }
 
 /**
- * Returns how the picture shows one of a list of places.
+ * Returns what the picture shows of one place in a list.
  * @param {(Pair | Hole)[]} list
  * @param {number} index
  * @param {Columns} columns

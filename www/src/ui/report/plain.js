@@ -1,13 +1,13 @@
 /**
- * The four figures with which the report begins: the number of particles, how much their spacing varies, the largest
- * error, and whether every part of the surface has particles.
+ * The four main figures of the report: the number of particles, the variation of their spacing, the largest error, and
+ * whether every part of the surface has particles.
  */
 import { formatCount, formatSignificant, MISSING } from '../format.js';
 import { valueAt, writeWord } from './rows.js';
 
 /** @import { Report } from '../../engine/types.js' */
 
-/** Share below which a distance from the surface is nothing to anyone: a thousandth of a per cent. */
+/** Distances from the surface below this share, a thousandth of a per cent, are negligible. */
 const LEAST_SHARE = 1e-5;
 
 /** @param {number} share */
@@ -27,7 +27,7 @@ export const PLAIN = [
     label: 'Spacing variation',
     help: 'How much the distance between neighbours varies, relative to its mean. A perfect lattice has 0 %.',
     write: (report) => {
-      // Particles of many sizes are measured by their own radii.
+      // Particles of varying sizes are measured by their own radii.
       const variation = valueAt(report, 'quality.size_variation') ?? valueAt(report, 'quality.spacing_variation');
       return typeof variation === 'number' ? `±\u202f${percent(variation)}` : MISSING;
     },

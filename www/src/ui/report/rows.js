@@ -27,7 +27,7 @@ export function valueAt(root, key) {
 const isRelaxed = ({ energy }) => energy !== null && energy.length > 1;
 
 /**
- * Returns a figure and, for a quality figure of a relaxed run, what it was before the relaxation.
+ * Returns a figure and, for a quality figure of a relaxed run, its value before the relaxation.
  * @param {Report} report
  * @param {string} key
  * @returns {{ now: unknown, before: unknown }} undefined for a value that does not exist
@@ -39,7 +39,7 @@ export function figuresOf(report, key) {
 }
 
 /**
- * Returns whether a report has a figure, as not every run has all of them. Without a report all rows are shown.
+ * Returns whether a report has a figure, since not every run has all. Without a report all rows are shown.
  * @param {Report | null} report
  * @param {{key: string, unless?: string | null}} row
  */
@@ -53,8 +53,8 @@ export function isTold(report, { key, unless }) {
 }
 
 /**
- * Returns the headings of the two columns of quality figures: of the particles as they were placed, and after
- * relaxation. Without a relaxation there is only the second column.
+ * Returns the headings of the two columns of quality figures: of the particles as placed, and after relaxation. Without
+ * a relaxation there is only the second column.
  * @param {Report | null} report
  */
 export function headingsOf(report) {
@@ -85,7 +85,7 @@ export function writeFigure({ digits, unit }, value) {
 }
 
 /**
- * Formats a range by its two ends, or as one figure if they are equal.
+ * Formats a range by its two ends, or as one figure if these are equal.
  * @param {ReportRow} row
  * @param {Report} report
  */
@@ -108,7 +108,7 @@ export function compare({ better, digits, unit }, before, now) {
   return change > 0 === (better === 'higher') ? 'better' : 'worse';
 }
 
-/** Groups the rows, in the order of their first row. @param {ReportRow[]} rows */
+/** Groups the rows; groups are in the order of their first rows. @param {ReportRow[]} rows */
 export function groupRows(rows) {
   /** @type {Map<string, ReportRow[]>} */
   const groups = new Map();

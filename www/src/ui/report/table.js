@@ -94,7 +94,7 @@ function figureOf(text, isPlaced, { row, show, stale }) {
     return explain(
       h(
         'button',
-        // During a run the figure is that of earlier particles, whose places are no longer there.
+        // During a run the figure belongs to earlier particles, whose places no longer exist.
         {
           type: 'button',
           class: 'shows',

@@ -1,4 +1,4 @@
-/** Shows the times of the sampling, of each of its phases as figures and bars, and of the measurement. */
+/** Shows the time of sampling, of each of its phases as figures and bars, and of the measurement. */
 import { computed } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { formatSeconds, formatSignificant, lastSteps } from '../format.js';
@@ -31,7 +31,7 @@ export function createTiming({ timing }, report) {
 
 /** @param {Timing} timing */
 function tableOfTimes({ steps, sampling, seconds }) {
-  // Steps that were made after the sampling have only the phase of relaxation.
+  // Steps made after the sampling have only the relaxation phase.
   const phases = PHASES.filter(([key]) =>
     steps > 0 ? key === 'relaxation' : key !== 'refinement' || seconds[key] > 0,
   );

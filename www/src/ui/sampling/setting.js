@@ -35,7 +35,7 @@ export function createSetting(engine, all, info) {
     control,
   );
   const help = () => ({ title: info.label, text: info.help });
-  // The popover is above, because below it would cover the next row.
+  // The popover is above, since below it would cover the next row.
   explain(element, help, { side: 'above' });
   // Touch has no hover, so a tap on the label shows the explanation.
   explain(label, help, { tap: true, side: 'above' });
@@ -91,7 +91,7 @@ function createNumber(engine, info, value) {
 }
 
 /**
- * Creates the box of a formula, which the core checks before it is taken.
+ * Creates the text box of a formula, which the core checks before it is used.
  * @param {Engine} engine
  * @param {SettingInfo} info
  * @param {ReadonlySignal<number | string>} value

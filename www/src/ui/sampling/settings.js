@@ -1,4 +1,4 @@
-/** Decides which settings are shown, where, and with which control, and whether they ask for another run. */
+/** Decides which settings are shown, where, and with which control, and whether the Run button is highlighted. */
 import { computed } from '@preact/signals-core';
 
 /** @import { Engine, SettingInfo, Settings } from '../../engine/types.js' */
@@ -6,12 +6,12 @@ import { computed } from '@preact/signals-core';
 /** The setting on which the others depend. It is shown first. */
 const KIND = 'sampling';
 const ADVANCED = 'Advanced';
-/** The settings that are shown with the clip box. */
+/** The group of settings that are shown with the clip box. */
 const BOX = 'Box';
 /** Largest number of letters in a segmented control. */
 const SEGMENTED_LETTERS = 24;
 
-/** Whether a setting is behind the button: the box of a formula needs room. @param {SettingInfo} info */
+/** Whether a setting is behind the Advanced button; the box of a formula needs room. @param {SettingInfo} info */
 const isAdvanced = ({ group, kind }) => group === ADVANCED || kind === 'text';
 
 /** @param {SettingInfo[]} settings */
@@ -67,8 +67,8 @@ export function countChanged(some, all, values) {
 }
 
 /**
- * Returns whether a run would change the picture: it is not that of the whole present input. Otherwise *Run* is quiet,
- * as changes are sampled by themselves.
+ * Returns whether a run would change the picture: it does not show all of the present input. Otherwise *Run* is not
+ * highlighted, because changes are sampled automatically.
  * @param {Engine} engine
  */
 export const isDue = ({ typing, partial, report, empty, busy, progress }) =>

@@ -57,7 +57,7 @@ export function mountHover(host, engine, { view, explainIt }) {
       engine.dismissHover();
       query(host, '.canvas-host').focus();
     } else if (event.key === 'Enter' && !(event.target instanceof HTMLButtonElement)) {
-      // Enter takes the particle in the middle of the picture. Pressed again, it has that one explained.
+      // Enter chooses the particle in the middle of the picture. Pressed again, it explains that particle.
       const middle = engine.project(engine.state.peek().view.camera.target);
       if (!middle || engine.pick(middle.x, middle.y) !== hover.index) return;
       go(hover.index);
@@ -67,7 +67,7 @@ export function mountHover(host, engine, { view, explainIt }) {
   }
 }
 
-/** Leads to the lesson. @param {boolean} isAdaptive @param {() => void} press */
+/** Creates the link to the lesson. @param {boolean} isAdaptive @param {() => void} press */
 function leadOf(isAdaptive, press) {
   if (!isAdaptive) return button({ class: 'small', press }, 'Explain this particle');
   return [

@@ -1,4 +1,4 @@
-/** Shows the choice of the colouring and its legend, with range and unit. */
+/** Shows the choice of colouring and its legend, with range and unit. */
 import { computed } from '@preact/signals-core';
 import { h, live, marked, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
@@ -47,7 +47,7 @@ export function createLegend(engine, { colours }) {
 /** @param {Engine} engine */
 const isValue = (engine) => engine.state.value.view.colour === 'value';
 
-/** Values that are offered, by what they mean. */
+/** Suggested values, with their meanings. */
 const VALUES = [
   ['k_1 k_2', 'Gaussian curvature'],
   ['k_1', 'larger principal curvature'],
@@ -59,7 +59,7 @@ const VALUES = [
   ['hypot(x, y)', 'distance from the axis'],
 ];
 
-/** Creates the box of the formula by which the particles are coloured. @param {Engine} engine */
+/** Creates the text box of the formula for colouring the particles. @param {Engine} engine */
 function createValue(engine) {
   const [told, list] = [uniqueId('value'), uniqueId('values')];
   const box = h('input', {
@@ -79,7 +79,7 @@ function createValue(engine) {
     },
   });
   box.setAttribute('list', list);
-  // Other changes of the state leave what is being typed.
+  // Other changes of the state keep the text being typed.
   const value = computed(() => engine.state.value.view.value);
   live(box, () => {
     box.value = value.value;

@@ -31,7 +31,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const lost = computed(() => engine.empty.value && engine.fieldError.value === null);
   const empty = h('div', { class: 'empty', role: 'status', hidden: () => !lost.value }, () => {
     if (!lost.value) return null;
-    // The next formula may have no surface for another reason.
+    // The next formula may lack a surface for another reason.
     void engine.field.value;
     void engine.revision.value;
     return [emptyState(engine), createKept(engine)];
@@ -52,13 +52,13 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   // The field panel announces the loading.
   const mesh = computed(() => (told.value ? '' : meshOf(engine)));
   const whole = computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. '));
-  // The panel of the mesh, which would cover these, says the same.
+  // The panel of the mesh covers these, and shows the same.
   const isAlone = () => engine.meshing.value === null;
   const caption = h('p', { class: 'caption', 'aria-hidden': 'true', hidden: () => !isAlone() });
   view.append(
     empty,
     h('div', { class: 'foot' }, createKept(engine, isAlone), createChip(engine), caption, hint),
-    // In a frame of another page there is no panel that shows it.
+    // In a frame of another page no panel shows the progress.
     h('div', { class: 'framed-track' }, createTrack(engine)),
     spoken,
   );
@@ -85,13 +85,13 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   hintUntilUsed(hint, stage, settled);
 }
 
-/** Creates the chip that is there where no graphics card draws. @param {Engine} engine */
+/** Creates the chip that says that no graphics card draws. @param {Engine} engine */
 const createChip = ({ backend }) =>
   explain(h('p', { class: 'chip', hidden: () => backend.value !== 'canvas2d' }, 'No graphics card'), () => ({
     text: 'The processor paints the picture, with fewer pixels while it moves. Particles and files are the same.',
   }));
 
-/** Returns what is said of the mesh while it is drawn. @param {Engine} engine */
+/** Returns the text about the mesh while it is drawn. @param {Engine} engine */
 function meshOf(engine) {
   if (engine.state.value.view.draw !== 'mesh' || engine.empty.value) return '';
   const mesh = engine.mesh.value;

@@ -192,7 +192,7 @@ function discSize(engine) {
 }
 
 /**
- * Creates a line of buttons of which one is pressed: the value of a part of the view.
+ * Creates a line of buttons for a value of the view, of which one is pressed.
  * @template {'draw' | 'faces' | 'projection' | 'theme'} K
  * @param {Engine} engine
  * @param {string} name

@@ -11,7 +11,7 @@ import { outerEdge, outward } from './edges.js';
  * @import { Edge, Mark, Pen, Point } from '../types.js'
  */
 
-/** Smallest distance of ticks, length of a tick, and distances of its figure and of the axis's name from the axis. */
+/** Smallest gap between ticks, length of a tick, and distances of its figure and the axis's name from the axis. */
 const APART_PX = 48;
 const TICK_PX = 5;
 const FIGURE_PX = 15;
@@ -23,7 +23,7 @@ const BAR_PX = 110;
 export function axesMark(engine) {
   const clip = boxOf(engine);
   /**
-   * The box around the particles. During a run it stays, so that the axes do not grow with the surface.
+   * The box around the particles. It stays during a run, so that the axes do not grow with the surface.
    * @type {Bounds | null}
    */
   let last = null;
@@ -70,8 +70,8 @@ function drawAxis(pen, engine, edge, axis) {
 }
 
 /**
- * Creates the scale bar. Its length holds at the distance of the camera's target: in a perspective picture what is
- * nearer looks longer.
+ * Creates the scale bar. Its length holds at the distance of the camera's target: in perspective, nearer things look
+ * longer.
  * @param {Engine} engine
  */
 export function createScaleBar(engine) {

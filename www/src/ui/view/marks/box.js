@@ -13,7 +13,7 @@ import { createHandle } from './handle.js';
 
 /** Step of the arrow keys as a share of the side. */
 const KEY_SHARE = 0.02;
-/** Share by which a drag with Shift moves the face. */
+/** Factor of a drag with Shift. */
 const FINE = 0.1;
 /** Distance of a length from its edge. */
 const LABEL_PX = 14;
@@ -34,7 +34,7 @@ export function boxMark(engine, stage) {
       const bounds = box.value;
       if (!bounds) return;
       for (const { put } of faces) put(bounds);
-      // The figures of the axes would stand in the same places.
+      // The figures of the axes would be at the same places.
       if (engine.state.value.view.axes) return;
       for (const [axis, name] of AXES.entries()) {
         const edge = outerEdge(engine, bounds, axis);

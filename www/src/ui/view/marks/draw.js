@@ -1,4 +1,4 @@
-/** Draws lines, rings and figures at places of the surface, in SVG elements that are reused from picture to picture. */
+/** Draws lines, rings and figures at places of the surface. Its SVG elements are reused for every picture. */
 
 /**
  * @import { Engine } from '../../../engine/types.js'

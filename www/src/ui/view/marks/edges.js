@@ -1,4 +1,4 @@
-/** Chooses edges of the clip box on the outline of its picture, where figures do not cover the surface. */
+/** Chooses edges of the clip box on the outline of its picture, so that figures do not cover the surface. */
 import { dot } from '../../../engine/vector.js';
 import { axisVector, centreOf, cornerOf } from '../../space.js';
 
@@ -8,8 +8,8 @@ import { axisVector, centreOf, cornerOf } from '../../space.js';
  */
 
 /**
- * Returns the edge along an axis on which figures are written: on the outline of the picture, the lowest for x and y,
- * the leftmost for z; null if the box reaches behind the eye.
+ * Returns the edge along an axis for its figures: on the outline of the picture, the lowest for x and y, the leftmost
+ * for z; null if the box reaches behind the eye.
  * @param {Engine} engine
  * @param {Bounds} bounds
  * @param {number} axis
@@ -43,13 +43,13 @@ export function outerEdge(engine, bounds, axis) {
       });
     }
   }
-  // Seen from inside the box no edge is on an outline.
+  // Seen from inside the box, no edge is on an outline.
   const outer = edges.filter((edge) => edge.outer);
   return (outer.length ? outer : edges).reduce((best, edge) => (edge.rank > best.rank ? edge : best));
 }
 
 /**
- * Returns the unit direction across an edge away from a point, and how a text placed there is anchored.
+ * Returns the unit direction perpendicular to an edge, away from a point, and the anchor of a text placed there.
  * @param {{ from: Point, to: Point }} edge
  * @param {Point} centre
  * @returns {Point & { anchor: 'start' | 'middle' | 'end' }}

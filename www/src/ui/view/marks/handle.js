@@ -1,6 +1,6 @@
 /**
- * A handle on the picture: a knob that is dragged along a line of the surface's space, or turned. It is a slider for
- * the keyboard and for assistive technology as well.
+ * A handle on the picture: a knob that is dragged along a line in space, or turned. For the keyboard and assistive
+ * technology it is a slider.
  */
 import { h } from '../../dom.js';
 
@@ -18,7 +18,7 @@ export function createHandle(engine, stage, { name, kind, grab, drag, drop, canc
   const knob = h('div', { class: `handle ${kind}`, ...(press ? told : { tabindex: -1, 'aria-hidden': 'true' }) });
   /** @type {number | null} */
   let held = null;
-  /** Distance from the pointer to the middle of the knob, which stays during a drag. */
+  /** Offset of the pointer from the centre of the knob, constant during a drag. */
   let grip = { x: 0, y: 0 };
   /** @param {PointerEvent} event @returns {Ray} */
   const rayOf = (event) => {
@@ -60,13 +60,13 @@ export function createHandle(engine, stage, { name, kind, grab, drag, drop, canc
   });
   return {
     knob,
-    /** Puts the knob at a place of the picture, or hides it. @param {Point | null} spot */
+    /** Places the knob in the picture, or hides it. @param {Point | null} spot */
     put(spot) {
       knob.hidden = spot === null;
       if (spot) knob.style.transform = `translate(${spot.x.toFixed(1)}px, ${spot.y.toFixed(1)}px)`;
     },
     /**
-     * Tells assistive technology the value.
+     * Reports the value to assistive technology.
      * @param {number} now
      * @param {number} min
      * @param {number} max

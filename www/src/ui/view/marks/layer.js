@@ -1,6 +1,6 @@
 /**
- * The layer of marks on the picture: lines and figures that belong to places of the surface, and handles to drag. They
- * are drawn anew after every picture, since places may have moved in it.
+ * The layer of marks on the picture: lines and figures at places of the surface, and handles to drag. They are redrawn
+ * after every picture, in which places may have moved.
  */
 import { computed } from '@preact/signals-core';
 import { h, live } from '../../dom.js';

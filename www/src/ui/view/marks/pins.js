@@ -1,6 +1,6 @@
 /**
- * Pins: points of the surface that are dragged, or stay where they are while others are. The parameters follow
- * (Witkin and Heckbert 1994, §3); the surface of a model, which has none, is pulled around them.
+ * Pins: points of the surface that are dragged, or held while others are. The parameters follow (Witkin and Heckbert
+ * 1994, §3); a model, which has no parameters, is deformed around them.
  */
 import { batch } from '@preact/signals-core';
 import { MOST_PULLS } from '../../../engine/constants.js';
@@ -17,14 +17,14 @@ import { createHandle } from './handle.js';
  * @import { Mark } from '../types.js'
  */
 
-/** Most pins at a time: more than most formulas have parameters. */
+/** Largest number of pins: more than most formulas have parameters. */
 const MOST_PINS = 6;
-/** Way of a pin by an arrow key, in radii of a particle, and its share with Shift. */
+/** Length of a pin's move by an arrow key, in particle radii, and the factor with Shift. */
 const KEY_RADII = 1;
 const FINE = 0.1;
-/** Usual reach of a pull on a model, over the diagonal of its box. */
+/** Default reach of a pull on a model, as a share of the diagonal of its box. */
 const REACH = 0.15;
-/** Distance over that diagonal, within which a pin is where a pull has ended, and is pulled on by the same. */
+/** Distance, as a share of that diagonal, within which a pin is at the end of a pull, which its drag then continues. */
 const SAME = 1e-4;
 
 /** @param {Engine} engine @param {HTMLElement} stage @param {Pins} pins @returns {Mark} */
@@ -75,16 +75,16 @@ export function pinMark(engine, stage, pins) {
 class Hand {
   #engine;
   #pins;
-  /** The pin that is held, and whether it is taken off once it is let go. */
+  /** The pin that is dragged, and whether it is removed when it is released. */
   #held = 0;
   #isFleeting = false;
-  /** Whether it was taken hold of in the picture. */
+  /** Whether the drag began in the picture. */
   #isTaken = false;
-  /** What there was when the drag began. @type {Start} */
+  /** The state at the start of the drag. @type {Start} */
   #start = { parameters: {}, pulls: [], diagonal: 0, pins: [] };
-  /** Where the pins are to be; null until the first motion. @type {readonly Vec3[] | null} */
+  /** Wanted places of the pins; null until the first motion. @type {readonly Vec3[] | null} */
   #wanted = null;
-  /** The field to which the pins belong, and what became of it at the last pull. */
+  /** The field to which the pins belong, and the result of the last pull. */
   #of = '';
   /** @type {Grip | null} */
   #grip = null;
@@ -96,7 +96,7 @@ class Hand {
   }
 
   /**
-   * Takes hold of the particle under a place of the picture, with Shift for one drag only.
+   * Grabs the particle under a place in the picture; with Shift its pin lasts for this drag only.
    * @param {{x: number, y: number}} at @param {boolean} shift
    */
   take(at, shift) {
@@ -121,7 +121,7 @@ class Hand {
     };
   }
 
-  /** Gives up the drag of a particle, if there is one. @param {KeyboardEvent} event */
+  /** Cancels the drag of a particle, if any. @param {KeyboardEvent} event */
   escape(event) {
     if (event.key !== 'Escape' || !this.#isTaken) return;
     event.stopPropagation();
@@ -141,7 +141,7 @@ class Hand {
     this.#wanted = null;
   }
 
-  /** Moves the pin in the plane through its place that faces the camera. @param {Ray} ray */
+  /** Moves the pin in the plane through it that faces the camera. @param {Ray} ray */
   drag({ eye, direction }) {
     const place = this.#start.pins[this.#held];
     const facing = towardEye(this.#engine.state.peek().view.camera);
@@ -155,7 +155,7 @@ class Hand {
     this.#go(this.#wanted, live);
   }
 
-  /** Takes the surface along to where the pins are to be. @param {readonly Vec3[]} wanted @param {boolean} live */
+  /** Deforms the surface towards the wanted pins. @param {readonly Vec3[]} wanted @param {boolean} live */
   #go(wanted, live) {
     const [engine, { parameters }] = [this.#engine, this.#start];
     if (!engine.field.peek()?.model) return engine.pull(parameters, wanted, { live });
@@ -181,7 +181,7 @@ class Hand {
     this.#go(this.#start.pins, false);
   }
 
-  /** Moves a pin by so many radii of a particle along the normal. @param {number} k @param {number} radii */
+  /** Moves a pin along the normal by some particle radii. @param {number} k @param {number} radii */
   push(k, radii) {
     this.grab(k);
     const { columns } = this.#engine;
@@ -195,7 +195,7 @@ class Hand {
     this.#pins.value = (this.#pins.peek() ?? []).filter((_, other) => other !== k);
   }
 
-  /** Puts the pins where the surface has come; those of a surface that something else has changed are gone. */
+  /** Moves the pins to the surface; removes them if something else has changed the surface. */
   follow() {
     const grip = this.#engine.grip.value;
     const field = fieldOf(this.#engine);
@@ -213,8 +213,8 @@ class Hand {
 }
 
 /**
- * Pulls the surface of a model so that a pin comes as near to a place as the others allow. Where it is the pin that was
- * pulled last, it is pulled on.
+ * Pulls a model's surface so that a pin comes as near to a place as the others allow. If that pin was pulled last, its
+ * pull is continued.
  * @param {Start} start @param {number} k  of the pin @param {Vec3} to
  */
 function pulled({ pulls, diagonal, pins }, k, to) {
@@ -228,13 +228,13 @@ function pulled({ pulls, diagonal, pins }, k, to) {
   return { pulls: [...before, pull], pins: pins.map((pin, other) => (other === k ? endOf(pull) : pin)) };
 }
 
-/** Returns a text by which fields are compared. @param {Engine} engine */
+/** Returns a text that identifies a field. @param {Engine} engine */
 function fieldOf({ field: { value: field }, state }) {
   const { surface, centres, pulls } = state.value;
   return JSON.stringify(field?.model ? [surface, centres, pulls] : field && [field.formula, field.parameters]);
 }
 
-/** Creates the card that says what a pull has come to. @param {Engine} engine @param {Pins} pins */
+/** Creates the card with the result of a pull. @param {Engine} engine @param {Pins} pins */
 export function createPinCard(engine, pins) {
   const text = h('span', { role: 'status' }, () => {
     if (pins.value === null) return '';

@@ -13,7 +13,7 @@ import { createHandle } from './handle.js';
 
 /** Length of the arrow in pixels. */
 const ARROW_PX = 52;
-/** Step of the arrow keys as a share of the way through the box, and the share of a drag with Shift. */
+/** Step of the arrow keys as a share of the extent of the box, and the factor of a drag with Shift. */
 const KEY_SHARE = 0.01;
 const FINE = 0.1;
 
@@ -54,11 +54,11 @@ export function planeMark(engine, stage) {
 class Mover {
   #engine;
   #box;
-  /** Place near which the knob is, if the plane was turned in the picture. @type {Vec3 | null} */
+  /** Point near the knob, if the plane was turned in the picture. @type {Vec3 | null} */
   #pivot = null;
-  /** The plane when a drag began. @type {CuttingPlane | null} */
+  /** The plane at the start of a drag. @type {CuttingPlane | null} */
   #before = null;
-  /** The place of its knob then. @type {Vec3} */
+  /** The place of its knob at that time. @type {Vec3} */
   #base = [0, 0, 0];
 
   /** @param {Engine} engine @param {ReadonlySignal<Bounds | null>} box */
@@ -67,13 +67,13 @@ class Mover {
     this.#box = box;
   }
 
-  /** Forgets about which place a plane was turned that is no longer there. */
+  /** Forgets the pivot of a plane that no longer exists. */
   forget() {
     this.#pivot = null;
   }
 
   /**
-   * Returns the place of the knob: on the plane, beside the pivot or the middle of the box.
+   * Returns the place of the knob: the pivot or the centre of the box, projected to the plane.
    * @param {CuttingPlane} plane
    * @param {Bounds} bounds
    */
@@ -82,7 +82,7 @@ class Mover {
     return along(near, normal, offset - dot(normal, near));
   }
 
-  /** Returns the drag of the knob, which moves the plane along its normal, within the box. */
+  /** Returns the drag of the knob, which moves the plane along its normal within the box. */
   sliding() {
     /** The last place of the pointer along the normal. @type {number | null} */
     let last = null;
@@ -106,8 +106,7 @@ class Mover {
   }
 
   /**
-   * Returns the drag of the arrow's tip, which turns the plane about its knob. The panel has sliders for the two
-   * angles.
+   * Returns the drag of the arrow's tip, which turns the plane about its knob. The panel has sliders for both angles.
    */
   turning() {
     let [radius, isFar] = [0, false];
@@ -138,7 +137,7 @@ class Mover {
     return bounds && plane;
   }
 
-  /** Ends a drag where it is. */
+  /** Ends a drag and keeps the plane. */
   #drop = () => this.#engine.setPlane(this.#engine.state.peek().plane);
 
   #cancel = () => {

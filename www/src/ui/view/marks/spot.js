@@ -1,4 +1,4 @@
-/** Marks the place that a figure of the report was pressed for: two particles, a hole, or an open border. */
+/** Marks the place of a figure pressed in the report: two particles, a hole, or an open border. */
 
 /**
  * @import { Engine } from '../../../engine/types.js'
