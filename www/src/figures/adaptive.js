@@ -14,10 +14,10 @@ import { FATES, inDegrees } from './words.js';
 
 /** Half size of the drawing, in radii of the particle. */
 const HALF = 4.5;
-/** Radii at which the arcs are drawn: outside the particle, the free angle outside the taken one. */
+/** Radii of the arcs, over the particle's: the taken angle, and outside it the free one. */
 const TAKEN_AT = 1.14;
 const FREE_AT = 1.36;
-/** Where τ is written: this far before the end of its arc, in radians, at this radius. */
+/** Place of the letter τ: this many radians before the end of its arc, at this radius. */
 const [TAU_BEFORE, TAU_AT] = [0.06, 1.66];
 /** Radius of the dot of a push. */
 const DOT = 0.07;
@@ -52,21 +52,21 @@ export function adaptivePlane(opened, moment) {
   return svg;
 }
 
-/** The child as a disc, at the end of its way. @param {Child} child @param {Plane} plane @param {boolean} isNow */
+/** The child as a disc, at its last place. @param {Child} child @param {Plane} plane @param {boolean} isNow */
 function discOf({ pushes, fate }, plane, isNow) {
   const last = pushes.at(-1);
   if (!last || (fate !== 'added' && !isNow)) return [];
   return [ring(isNow ? 'slot now' : 'slot', unrolled(plane, last.position), last.radius / plane.radius)];
 }
 
-/** The pushes as little steps. @param {Child} child @param {Plane} plane */
+/** The pushes as small steps. @param {Child} child @param {Plane} plane */
 function wayOf({ pushes }, plane) {
   const places = pushes.map(({ position }) => unrolled(plane, position));
   return places.length > 0 ? [line('way', places), ...places.map((place) => ring('step', place, DOT))] : [];
 }
 
 /**
- * The angle that the child takes, and the free one, which begins where the child's does.
+ * The angle that the child takes, and the free angle, which begin in the same direction.
  * @param {Child} child
  * @param {Plane} plane
  */
@@ -81,7 +81,7 @@ function anglesOf({ room, pushes }, plane) {
     line('free', arcOf(from, room.tau_rad, FREE_AT)),
     line('taken', arcOf(from, room.phi_rad, TAKEN_AT)),
     label('name', middle(room.phi_rad, 0.66), 'φ'),
-    // At the end of the free angle, between two discs: in its middle would be the number of one.
+    // At the end of the free angle, between two discs: its middle may be covered by the number of a disc.
     label('name', isRing ? [0, -FREE_AT - 0.4] : polar(from + room.tau_rad - TAU_BEFORE, TAU_AT), 'τ'),
   ];
 }

@@ -1,4 +1,4 @@
-/** The paper's algorithm as a list of lines, in which one is live. */
+/** The paper's algorithm as a list of lines, of which the present one is highlighted. */
 import { h } from '../ui/dom.js';
 import { ALGORITHM } from './words.js';
 

@@ -15,9 +15,9 @@ const PROFILE = { left: -2.4, right: 2.9, half: 2.3 };
 /** Half size of a fate's shape, and distance of a slot's number from the particle: between its disc and the child. */
 const SHAPE = 0.27;
 const NUMBER_AT = 1.38;
-/** A particle's number is so far from its middle, and from the shape of a fate if there is room. */
+/** Distance of a particle's number from the particle's centre, and least distance from the shape of a fate. */
 const [BESIDE, CLEAR] = [0.58, 0.5];
-/** Radius of the middle that a number keeps clear of likewise: a little less than that of the disc there. */
+/** Radius around the central particle that numbers keep clear of: a little less than that of its disc. */
 const MIDDLE = 0.85;
 
 /**
@@ -65,11 +65,11 @@ export function tangentPlane(opened, moment) {
   return svg;
 }
 
-/** Marks of a slot, which is found by its number. @param {Child} child @param {Element[]} marks */
+/** Groups the marks of a slot under its number. @param {Child} child @param {Element[]} marks */
 export const slotGroup = ({ slot }, marks) => s('g', { 'data-slot': slot }, ...marks);
 
 /**
- * Returns the place of a particle's number within its disc: outwards, or elsewhere where it would be covered.
+ * Returns the place of a particle's number within its disc: outwards, or elsewhere if it would be covered.
  * @param {Point} at @param {readonly Point[]} taken  places of the shapes and of the slots' numbers
  * @returns {Point}
  */
@@ -89,7 +89,7 @@ function clear([x, y], taken) {
   return places[free < 0 ? room.indexOf(Math.max(...room)) : free];
 }
 
-/** Where the number of a slot stands. @param {Pick<Child, 'slot'>} child */
+/** The place of a slot's number. @param {Pick<Child, 'slot'>} child */
 const numberPlace = ({ slot }) => scaledBy(slotPlace(slot), NUMBER_AT / 2);
 
 /** @param {Child} child @param {boolean} isNow */
@@ -104,7 +104,7 @@ function slotMarks({ slot }, isNow) {
 }
 
 /**
- * Where a child is; null before it is tried.
+ * Returns the place of a child; null before it is tried.
  * @param {Child} child @param {Plane} plane @param {(particle: number) => Point} at
  */
 function placeOf({ fate, landed, start, particle, iterates }, plane, at) {
@@ -114,7 +114,7 @@ function placeOf({ fate, landed, start, particle, iterates }, plane, at) {
 }
 
 /**
- * Draws where a child is, with the shape of its fate, and a line to the particle that it met.
+ * Draws a child with the shape of its fate, and a line to the particle that it matched.
  * @param {Child} child @param {Plane} plane @param {(particle: number) => Point} at
  */
 export function childMarks(child, plane, at) {
@@ -138,7 +138,7 @@ function tangentWords({ subject }, { frame, gathered, children }) {
 }
 
 /**
- * Draws the plane of a slot from the side: the surface, the circle, the search on it, and Newton's way for comparison.
+ * Draws the plane of a slot from the side: the surface, the circle, the search on it, and Newton's steps to compare.
  * @param {Opened} opened @param {Profile} profile  of the slot @param {Child} child
  */
 export function profileOf(opened, profile, child) {
@@ -171,7 +171,7 @@ export function profileOf(opened, profile, child) {
   return svg;
 }
 
-/** Whether the search for a child is over, so that Newton's landing may be compared with it. @param {Child} child */
+/** Whether the search for a child is over, so that Newton's result may be compared with it. @param {Child} child */
 export const isSearched = ({ landed, fate }) => landed !== null || fate !== 'open';
 
 /**
@@ -206,13 +206,12 @@ function searchMarks(child, profile, at, { size, distance }) {
   return marks;
 }
 
-/** Half the arc of the circle in a lens, in its half sizes, and the number of its parts. */
+/** Half length of the circle's arc in a lens, in half sizes of the lens, and the number of its segments. */
 const ARC = 1.6;
 const ARC_PARTS = 24;
 
 /**
- * Draws what lies around the landing enlarged, since on a smooth surface the steps are short; null if there is nothing
- * to see.
+ * Enlarges the surroundings of the landing, because steps are short on a smooth surface; null if all points coincide.
  * @param {Opened} opened @param {Profile} profile @param {Child} child
  */
 export function lens({ subject, place }, profile, child) {
@@ -238,7 +237,7 @@ export function lens({ subject, place }, profile, child) {
   );
 }
 
-/** From here on, in radii, a landing beside the plane is named: its cross is then seen off the curve. */
+/** A landing this many radii from the plane is reported: its cross is then visibly off the curve. */
 export const ASIDE = 0.02;
 
 /**

@@ -19,7 +19,7 @@ export function inPlane({ centre, right, up, radius }, place) {
  */
 export const slotPlace = (slot) => [2 * Math.cos((slot * Math.PI) / 3), 2 * Math.sin((slot * Math.PI) / 3)];
 
-/** Least span of a lens, in radii: below it there is nothing to be seen. */
+/** Least span of a lens, in radii; below it all points count as one. */
 const LEAST_SPAN = 1e-6;
 /** Room around what a lens shows, as a share of its span. */
 const MARGIN = 0.3;
@@ -40,11 +40,11 @@ export function lensOf(points) {
   return { centre: [(x0 + x1) / 2, (y0 + y1) / 2], half: (0.5 + MARGIN) * span };
 }
 
-/** Distance of the corners of an arc, in radians. */
+/** Angle between neighbouring points of an arc, in radians. */
 const CORNER_RAD = Math.PI / 48;
 
 /**
- * Returns where a place is in the plane, at its true distance from the particle, as the algorithm measures it.
+ * Returns a place in the plane at its true distance from the particle, which the algorithm uses.
  * @param {Plane} plane @param {ArrayLike<number>} place @returns {Point}
  */
 export function unrolled(plane, place) {

@@ -1,6 +1,6 @@
 /**
- * The state of a particle at one of its events. It is put together from the events up to that one, so a step back
- * gives exactly the state before.
+ * The state of a particle at one of its events. It is computed from the events up to that one, so a step back gives
+ * exactly the earlier state.
  */
 
 /**
@@ -10,10 +10,10 @@
 
 const SLOTS = 6;
 
-/** Number of slots that events speak of. @param {readonly LessonEvent[]} events */
+/** Number of slots that occur in events. @param {readonly LessonEvent[]} events */
 const slotsOf = (events) => events.reduce((most, event) => Math.max(most, (slotOf(event) ?? 0) + 1), 1);
 
-/** Whether a particle is treated as §5 of the paper says. @param {readonly LessonEvent[]} events */
+/** Whether a particle is treated by §5 of the paper. @param {readonly LessonEvent[]} events */
 export const isAdaptive = (events) => events.some(({ type }) => type === 'arc');
 
 /**
@@ -98,7 +98,7 @@ function include(moment, event) {
 }
 
 /**
- * The search for an adaptive child begins where it was pushed to: on the circle of that radius around its parent.
+ * Starts the search for an adaptive child where it was pushed to: on the circle of that radius around its parent.
  * @param {Child} child @param {Of<'iterate'>} iterate  the first one
  */
 function begin(child, { parent, slot, position }) {
@@ -106,7 +106,7 @@ function begin(child, { parent, slot, position }) {
   child.start = { type: 'slot', parent, slot, direction: [0, 0, 0], theta_rad: 0, place: position };
 }
 
-/** The slot of which an event speaks, or null. @param {LessonEvent} event */
+/** The slot of an event; null if it has none. @param {LessonEvent} event */
 function slotOf(event) {
   return 'slot' in event ? event.slot : null;
 }

@@ -1,6 +1,4 @@
-/**
- * Fetches from the worker of the lesson what is drawn of a particle: its events, and the plane of each of its slots.
- */
+/** Fetches from the lesson's worker what the drawings of a particle need: its events, and the plane of each slot. */
 import { NO_PARENT } from '../engine/core-numbers.js';
 import { along, cross, distance, dot, triple, unit, vec } from '../engine/vector.js';
 import { inPlane, lensOf } from './geometry.js';
@@ -11,15 +9,15 @@ import { momentAt } from './moment.js';
  * @import { Child, Profile } from './types.js'
  */
 
-/** Limit on |f|/|∇f| in radii, as the runs of the lesson have it. */
+/** Limit on |f|/|∇f| in radii, the same as in the lesson's runs. */
 export const RESIDUAL = 1e-4;
-/** Half size of a section in radii, and its cells. */
+/** Half size of a section in radii, and the number of its cells. */
 const SECTION_HALF = 3.2;
 const SECTION_CELLS = 64;
 const LENS_CELLS = 24;
 
 /**
- * Fetches the events of a particle and all that is drawn of it, so that each step is at once.
+ * Fetches the events of a particle and all data for its drawings, so that every step is shown at once.
  * @param {LessonClient} client @param {{ end: LessonParticles, radius: number }} run @param {number} particle
  */
 export async function openParticle(client, { end, radius }, particle) {

@@ -3,7 +3,7 @@ import { s } from '../ui/dom.js';
 
 /** @import { Point } from './types.js' */
 
-/** Writes a coordinate with a length that does not depend on the number. @param {number} value */
+/** Rounds a coordinate to four decimals. @param {number} value */
 const short = (value) => String(Math.round(value * 1e4) / 1e4);
 
 /** @param {string} kind  a class @param {Point} at @param {number} r */
@@ -30,7 +30,7 @@ export function segments(kind, ends, scale) {
 }
 
 /**
- * Shapes of the fates, around the origin with half size 1, so that they differ without colour.
+ * Shapes of the fates, around the origin with half size 1; they differ even without colour.
  * @type {Record<string, string>}
  */
 const SHAPES = {

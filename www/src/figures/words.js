@@ -1,4 +1,4 @@
-/** The events of a particle in words, and the paper's Algorithm 2 with the line that an event belongs to. */
+/** Describes the events of a particle, and has the paper's Algorithm 2 with the line of each event. */
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 
 /**
@@ -31,7 +31,7 @@ export const FATES = {
 };
 
 /**
- * Algorithm 2 in words. `of` are the events that a line stands for; of the fates it is `fate:` with the name.
+ * Algorithm 2 in words. `of` lists the types of events of a line; a fate is `fate:` with its name.
  * @type {readonly { depth: number, text: string, of: readonly string[] }[]}
  */
 export const ALGORITHM = [
@@ -53,7 +53,7 @@ export const ALGORITHM = [
 ];
 
 /**
- * Algorithm 2 for particles of many sizes (§5): children are pushed into the free spaces around them.
+ * Algorithm 2 for particles of varying sizes (§5): children are pushed into the free spaces around them.
  * @type {typeof ALGORITHM}
  */
 export const ADAPTIVE = [
@@ -76,7 +76,7 @@ export const ADAPTIVE = [
 ];
 
 /**
- * Index of the line of an algorithm that an event belongs to; −1 for none.
+ * Index of an event's line in an algorithm; −1 for none.
  * @param {LessonEvent} event
  * @param {typeof ALGORITHM} [lines]
  */
@@ -86,7 +86,7 @@ export function lineOf(event, lines = ALGORITHM) {
 }
 
 /**
- * Tells an event in one or two sentences.
+ * Describes an event in one or two sentences.
  * @param {Moment} moment @param {Subject} subject
  */
 export function tell({ event, slot, children, evaluations }, subject) {

@@ -1,7 +1,7 @@
 /**
  * Keeps the state in the fragment of the page's address: writes it shortly after a change and reads it from a link.
- * Another surface is a new entry of the browser's history, so that Back leads to the surface before, as it was seen;
- * other changes are written into the present entry.
+ * Choosing another surface adds an entry to the browser's history, so that Back returns to the previous surface and its
+ * view; other changes are written into the present entry.
  *
  * @module
  */
@@ -12,20 +12,20 @@ import { effect } from '@preact/signals-core';
 /** Delay between a change and its write. Browsers refuse more than about 100 address changes in 30 seconds. */
 const ADDRESS_MS = 500;
 
-/** What makes a surface another one, for which Back is pressed. @param {State} state */
+/** Identifies the surface; a change of it makes a new history entry. @param {State} state */
 const nameOf = ({ surface, formula }) => JSON.stringify([surface, formula]);
 
 /** @param {Engine} engine @param {{ hasEntries: boolean }} how  `hasEntries`: surfaces are entries of the history */
 export function keepAddress(engine, { hasEntries }) {
-  /** The fragment last written by the page. Any other fragment comes from the user. */
+  /** The fragment last written by the page. Any other comes from the user. */
   let own = location.hash;
   /**
-   * The surface of the present entry; null while it may still change, as one that is being typed.
+   * The surface of the present entry; null while it may still change, as during typing.
    * @type {string | null}
    */
   let entry = null;
   let isOpen = false;
-  /** Number of fragments that are being read, one after the other. */
+  /** Number of fragments still to be read, one after the other. */
   let reading = 0;
   let last = Promise.resolve();
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -43,7 +43,7 @@ export function keepAddress(engine, { hasEntries }) {
   });
   /** @param {string} link */
   async function read(link) {
-    // The theme is that of the reader, not of an entry.
+    // The theme belongs to the reader, not to a history entry.
     const { theme } = engine.state.value.view;
     await engine.openLink(link, { patch: { view: { theme } } });
     entry = nameOf(engine.state.value);
@@ -51,7 +51,7 @@ export function keepAddress(engine, { hasEntries }) {
   async function write() {
     if (!engine.description.value) return;
     const link = await engine.link();
-    // What there was before Back does not belong into the entry that it leads to.
+    // The state before Back must not be written into the entry that Back leads to.
     if (reading > 0) return;
     const { trial, typing, fieldError, state } = engine;
     const name = nameOf(state.value);
@@ -65,7 +65,7 @@ export function keepAddress(engine, { hasEntries }) {
   effect(() => {
     // Reading the whole state makes the effect run after any change of it, and after a typed formula has settled.
     void [engine.state.value, engine.trial.value, engine.typing.value, engine.fieldError.value];
-    // The surface with which the page opens is that of its entry, also if another is chosen before the first write.
+    // The first surface is that of the opening entry, even if another is chosen before the first write.
     if (!isOpen && engine.description.value && engine.state.value.surface !== '') {
       isOpen = true;
       entry = nameOf(engine.state.value);

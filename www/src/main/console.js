@@ -12,7 +12,7 @@ import { atRest, once, settled } from '../engine/rest.js';
  * @import { Console, Measured, Particles } from './types.js'
  */
 
-/** Copies of the columns of the report. @param {Columns} columns */
+/** Copies of the columns that the report measures. @param {Columns} columns */
 const measuredOf = (columns) =>
   /** @type {Measured} */ (Object.fromEntries(MEASURED.map((name) => [name, columns[name]?.slice() ?? null])));
 
@@ -60,7 +60,7 @@ export function createConsole(engine) {
     return settled(engine);
   };
   /**
-   * Does the same for what samples the formula: a mistake in it is no report of the surface before.
+   * Like `after`, for actions that sample the formula: an error in it must not return the previous surface's report.
    * @param {() => void} act
    */
   const sampled = async (act) => {

@@ -1,5 +1,5 @@
 /**
- * Shows the picture alone, for a page that has this one in a frame, and answers the messages of that page. See
+ * Shows the picture alone, for a page that embeds this one in a frame, and answers that page's messages. See
  * docs/page.md.
  */
 import { byId } from '../ui/dom.js';
@@ -8,16 +8,16 @@ import sheet from './embed.css?url';
 
 /** @import { Console, Request } from './types.js' */
 
-/** Name by which the messages of both sides are known. */
+/** The type of all messages in both directions. */
 const TYPE = 'marching-particles';
 
 /**
  * @param {Console} p
- * @param {string} parts  that are shown with the picture, with commas between them
+ * @param {string} parts  shown with the picture, separated by commas
  */
 export function embed(p, parts) {
   Object.assign(byId('shell').dataset, { hidden: 'all', embed: parts.split(',').join(' ') });
-  // Without the sheet the picture stands alone, which is the most of it.
+  // Without the style sheet the picture still works.
   loadSheet(sheet).catch(() => {});
   const { parent } = window;
   if (parent === window) return;
@@ -26,7 +26,7 @@ export function embed(p, parts) {
   addEventListener('message', async ({ source, origin, data }) => {
     if (source !== parent || data?.type !== TYPE || !Object.hasOwn(calls, data.call)) return;
     const { call, id = null, value } = /** @type {Request} */ (data);
-    // A document without an origin, such as a file, has no name by which it could be answered.
+    // A document without an origin, such as a file, can only be answered at any origin.
     const to = origin === 'null' ? '*' : origin;
     try {
       parent.postMessage({ type: TYPE, call, id, value: await calls[call](value) }, to);
@@ -34,6 +34,6 @@ export function embed(p, parts) {
       parent.postMessage({ type: TYPE, call, id, error: error instanceof Error ? error.message : String(error) }, to);
     }
   });
-  // The parent is not known yet, and this says nothing of anyone.
+  // The parent's origin is not known yet, and this message is not confidential.
   void p.ready.then(() => parent.postMessage({ type: TYPE, call: 'ready', id: null, value: p.version }, '*'));
 }

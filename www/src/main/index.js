@@ -18,10 +18,10 @@ const engine = createEngine({ host: byId('canvas-host'), link: location.hash, ba
 const p = createConsole(engine);
 Object.assign(window, { marchingParticles: p });
 const parts = query.get('embed');
-// In a frame Back is that of the page around it.
+// In a frame, Back belongs to the page around it.
 keepAddress(engine, { hasEntries: parts === null });
 if (parts !== null) {
-  // The panels do not flash before the rest is there.
+  // Hidden at once, so that the panels do not flash before the rest is loaded.
   byId('shell').dataset.hidden = 'all';
   void import('./embed.js').then(({ embed }) => embed(p, parts));
 }

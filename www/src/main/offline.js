@@ -1,6 +1,6 @@
 /**
- * Makes the page work without a network, and says when there is a new version of it. The service worker fetches all
- * files of the site, so it starts when the first surface is there and nothing else is to be done.
+ * Makes the page work without a network, and announces new versions of it. The service worker fetches all files of the
+ * site, so it starts only once the first surface is sampled and the page is idle.
  */
 import { effect } from '@preact/signals-core';
 import { storeSite } from '../ui/offline.js';
@@ -11,7 +11,7 @@ import { storeSite } from '../ui/offline.js';
  */
 
 /**
- * Time after which a page that is looked at again asks for a new version. A browser asks by itself whenever a page is
+ * A page that is looked at again after this time asks for a new version. Browsers themselves ask only when a page is
  * loaded.
  */
 const ASK_MS = 3_600_000;
@@ -26,7 +26,7 @@ export function keepOffline(engine, toast) {
 }
 
 /**
- * Says when there is a new version, and asks for one now and then.
+ * Announces a new version, and asks for one now and then.
  * @param {ServiceWorkerRegistration} registration @param {boolean} isFirst @param {Toast} toast
  */
 function follow(registration, isFirst, toast) {
@@ -47,7 +47,7 @@ function follow(registration, isFirst, toast) {
   let isOld = !isFirst;
   serviceWorker.addEventListener('controllerchange', () => {
     if (isAsked) location.reload();
-    // Another page of this site has asked. This one goes on with what it has loaded.
+    // Another page of this site has asked for the new version. This page keeps running with the files it has loaded.
     else if (isOld)
       tell(toast, 'There is a new version of this page. This one is no longer stored.', () => location.reload());
     isOld = true;

@@ -31,6 +31,7 @@ export const costKey = (field, settings) =>
 /**
  * Returns the length whose square is inversely proportional to the number of particles: the radius, or the length that
  * scales all radii of an adaptive run. NaN if the settings give a count.
+ * @param {Settings} settings @param {number} diagonal  of the clip box
  */
 export function sizeOf(settings, diagonal) {
   if (settings.size_mode === 'count') return NaN;
