@@ -6,16 +6,16 @@
 //! * The paper names no step lengths.
 //! * A child is added if the free angle τ is at least a share of φ
 //!   ([`Rules::fit`](super::Rules::fit)).
-//! * The radius of a child is evaluated once more where it lands. A child nearer to a particle than
-//!   the match tolerance allows is not added.
+//! * The radius of a child is evaluated again where it lands. A child nearer to a particle than the
+//!   match tolerance is not added.
 
 use super::{ChildSlot, Circle, Moment, Observer, PaperRun, TangentFrame};
 use crate::particles::{SlotFate, Slots};
 use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
-/// Neighbours are gathered within this many radii of the parent: a disc that touches it from
-/// farther away is twice as large.
+/// Neighbours within this many radii of the parent are gathered: a disc that touches the parent
+/// from farther away is twice as large.
 const REACH: f64 = 3.7;
 
 /// A neighbour within this share of r_i + r_j lies on the circle around the parent. In a lattice
@@ -68,8 +68,8 @@ impl Circumference {
         Disc { centre: flat.normalize_or_zero() * offset.length(), radius }
     }
 
-    /// Largest overlap of a disc with a particle around, as a share of r_i + r_j; negative if there
-    /// is none.
+    /// Largest overlap of a disc with a gathered particle, as a share of r_i + r_j; negative if
+    /// there is none.
     fn overlap(&self, child: Disc) -> f64 {
         let shares = self
             .around
@@ -90,7 +90,7 @@ impl Circumference {
         libm::acos(((d * d + e * e - apart * apart) / (2.0 * d * e)).clamp(-1.0, 1.0))
     }
 
-    /// The free angle τ between two discs, which is φ where the child just fits between them.
+    /// The free angle τ between two discs; it equals φ if the child just fits between them.
     fn free(&self, child: Disc, before: Disc, behind: Disc) -> f64 {
         let apart = behind.angle() - before.angle();
         let apart = if apart <= 0.0 { apart + TAU } else { apart };
@@ -133,8 +133,8 @@ impl<O: Observer> PaperRun<O> {
         }
     }
 
-    /// Places children in a free space, from its beginning on, until the next one has no room (Fig.
-    /// 8).
+    /// Places children in a free space, starting at its beginning, until the next one has no room
+    /// (Fig. 8).
     fn fill_space(&mut self, ring: &mut Circumference, ends: Option<[(u32, Disc); 2]>) {
         let angles_rad = ends.map_or([0.0, TAU], |ends| ends.map(|(_, end)| end.angle()));
         let particles = ends.map(|ends| ends.map(|(particle, _)| particle));
@@ -208,13 +208,13 @@ impl<O: Observer> PaperRun<O> {
     /// A child in the tangent plane, with the radius there: "at each step we evaluate the
     /// curvature".
     fn sized(&mut self, ring: &Circumference, centre: DVec2) -> Disc {
-        // Where the curvature has no value, the smallest radius is that of its limit.
+        // If the curvature is undefined, the smallest radius is that of its limit.
         let radius = self.radius_at(ring.place(centre)).unwrap_or(self.rules.sizes.smallest());
         Disc { centre, radius }
     }
 
-    /// "Finally we re-project the children of P on the surface" (§5.1), and adds the child unless a
-    /// particle is in its way.
+    /// "Finally we re-project the children of P on the surface" (§5.1): adds the child unless it
+    /// overlaps a particle.
     fn project(&mut self, ring: &mut Circumference, child: Disc) {
         let of = ring.child;
         let distance = child.centre.length();

@@ -1,8 +1,8 @@
 //! *MarchingParticles: Fast Generation of Particles for the Sampling of Implicit Surfaces* (2007),
-//! to be read beside the paper.
+//! to be read with the paper at hand.
 //!
-//! One particle after the other, in double precision; nothing is made for speed. Read in this
-//! order:
+//! It treats one particle after the other, in double precision; nothing is optimised for speed.
+//! Reading order:
 //!
 //! | Paper | Here |
 //! |---|---|
@@ -31,8 +31,8 @@
 //!
 //! # Differs from the paper
 //!
-//! * A child whose search for the surface does not converge is not placed; the paper says nothing
-//!   of it.
+//! * A child whose search for the surface does not converge is not placed; the paper does not treat
+//!   this case.
 //! * A surface may have several seeds, so that each of its components can have one.
 
 mod adaptive;
@@ -79,14 +79,14 @@ impl<O: Observer> PaperRun<O> {
         &self.particles
     }
 
-    /// "Starting from an arbitrary chosen seed particle" (§4.4): adds a seed where the surface is
-    /// beside `point`, and says whether it is.
+    /// "Starting from an arbitrary chosen seed particle" (§4.4): adds a seed if the surface is near
+    /// `point`, and returns whether it is.
     pub fn begin_at(&mut self, point: DVec3) -> bool {
         let seed = self.seed_at(point, 0);
         seed.map(|seed| self.enter(seed)).is_some()
     }
 
-    /// The seed of a front beside a point of the box, if the surface is near.
+    /// The seed of a front near a point of the box, if the surface is near.
     pub(crate) fn seed_at(&mut self, point: DVec3, front: u32) -> Option<Particle> {
         let sizes = self.rules.sizes;
         let residual = self.rules.residual * sizes.smallest();
@@ -97,11 +97,11 @@ impl<O: Observer> PaperRun<O> {
         self.surface.bounds.holds(position).then_some(seed)
     }
 
-    /// The complete process (§4.4, §5.2): treats all particles, those that come of it too, then
-    /// relaxes in `steps` steps.
+    /// The complete process (§4.4, §5.2): treats all particles, including new ones, then makes
+    /// `steps` relaxation steps.
     pub fn sample(&mut self, steps: u32) {
-        // "While it exists one particle marked as not done": the one that has waited longest. The
-        // text says stack, but the rings of Fig. 11 are those of a queue.
+        // "While it exists one particle marked as not done": takes the oldest. The text says stack,
+        // but the rings of Fig. 11 are those of a queue.
         let mut next = 0;
         while let Some(particle) = self.particles.get(next) {
             if !particle.is_done {
@@ -128,7 +128,7 @@ impl<O: Observer> PaperRun<O> {
         self.rules.sizes.radius_at(&mut self.surface, p)
     }
 
-    /// Adds a particle and says its number.
+    /// Adds a particle and returns its number.
     pub(crate) fn enter(&mut self, particle: Particle) -> u32 {
         let number = self.particles.len() as u32;
         self.buckets.insert(particle.p(), number);
@@ -142,8 +142,8 @@ impl<O: Observer> PaperRun<O> {
         Particle { front, ..Particle::placed(position, normal, radius, Some(parent), level + 1) }
     }
 
-    /// Decides the fate of a child. `particle` is the one that was added, or the one that was
-    /// there.
+    /// Decides the fate of a child. `particle` is the added particle, or the one that the child
+    /// matched.
     pub(crate) fn decide(&mut self, child: ChildSlot, fate: SlotFate, particle: Option<u32>) {
         self.particles[child.parent as usize].slots.set(child.slot as usize, fate);
         self.tell(child, Moment::Decided { fate, particle });
@@ -173,38 +173,37 @@ pub enum Moment<'a> {
     Proposed(&'a Circle),
     /// The field is evaluated on the child's way to the surface (§4.3).
     Tried(Trial),
-    /// The child has come to the surface.
+    /// The child has reached the surface.
     Landed { position: DVec3, normal: DVec3 },
     /// The particles within `reach` are gathered.
     Gathered { reach: f64, neighbours: &'a [Nearby] },
     /// The child is compared with the nearest particle of its sheet, if there is one ("if an
     /// existing particle correspond"): it corresponds within the distance `limit`.
     Compared { position: DVec3, nearest: Option<Nearby>, limit: f64, corresponds: bool },
-    /// The fate of the child is decided. The particle is the one that was added, or the one that
-    /// was there.
+    /// The fate of the child is decided. The particle is the added one, or the one that the child
+    /// matched.
     Decided { fate: SlotFate, particle: Option<u32> },
     /// A free space is found on the circle, between two particles that touch the parent (§5.3, Fig.
-    /// 8a). There are none if the whole circle is free.
+    /// 8a). `ends` is `None` if the whole circle is free.
     Space { ends: Option<[u32; 2]>, angles_rad: [f64; 2] },
-    /// An adaptive child starts (§5.1, Figs 7a and 7c). `tangent` is the point I of Fig. 7c, which
-    /// the first child of a seed has not.
+    /// An adaptive child starts (§5.1, Figs 7a and 7c). `tangent` is the point I of Fig. 7c; the
+    /// first child of a seed has none.
     Started { tangent: Option<DVec3>, position: DVec3, radius: f64 },
     /// An adaptive child has been pushed away from its parent (Figs 7b and 7e).
     Pushed { position: DVec3, radius: f64 },
-    /// An adaptive child has been pushed along the circle (Fig. 7f), to where `overlap` is its
-    /// largest with another particle.
+    /// An adaptive child has been pushed along the circle (Fig. 7f); `overlap` is its largest
+    /// overlap with another particle there.
     Turned { position: DVec3, radius: f64, overlap: f64 },
     /// The angle φ that an adaptive child takes is compared with the free angle τ (Figs 7g, 8c and
     /// 8e).
     Room { phi_rad: f64, tau_rad: f64, fits: bool },
 }
 
-/// Observer of a run: it is told the moments of the treatment of a particle that leave no trace in
-/// the particles. All other events, such as seeds and moves, can be read off the particles between
-/// two steps. `()` looks at nothing.
+/// Observer of a run. It receives the moments of a particle's treatment that leave no trace in the
+/// particles. All other events, such as seeds and moves, follow from comparing the particles of two
+/// steps. `()` ignores all moments.
 pub trait Observer {
-    /// Something has happened to a child, or to its parent; `particles` are those that there are
-    /// then.
+    /// Something has happened to a child, or to its parent; `particles` are the present ones.
     fn see(&mut self, _child: ChildSlot, _moment: Moment<'_>, _particles: &[Particle]) {}
 }
 

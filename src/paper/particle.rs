@@ -17,8 +17,8 @@ pub struct Particle {
     pub normal: [f64; 3],
     /// Repulsion radius.
     pub radius: f64,
-    /// The particle that placed this one; none for a seed and in particle systems, where no index
-    /// lasts.
+    /// The particle that placed this one; none for a seed, and in particle systems, whose indices
+    /// change.
     pub parent: Option<u32>,
     /// Generation level; in a particle system the number of fissions since the first particle.
     pub level: u32,
@@ -31,7 +31,7 @@ pub struct Particle {
     #[serde(skip)]
     pub is_done: bool,
     /// Signed distance f/|∇f| from the surface, to first order. Only Witkin and Heckbert's
-    /// particles are beside it for long.
+    /// particles may be off it for several steps.
     #[serde(skip)]
     pub(crate) height: f64,
 }
@@ -73,7 +73,7 @@ pub struct Nearby {
     pub distance: f64,
 }
 
-/// Particles by the cube that they are in.
+/// Particles by the cube that contains them.
 #[derive(Clone, Debug)]
 pub(crate) struct Buckets {
     side: f64,

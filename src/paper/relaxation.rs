@@ -1,6 +1,6 @@
-//! Relaxation: in uniform sampling (§4.5) the repulsion of Witkin and Heckbert 1994, §4, without
-//! fission, death and adaptive radii; in non-uniform sampling (§5.4) forces between discs that
-//! overlap.
+//! Relaxation. In uniform sampling (§4.5): the repulsion of Witkin and Heckbert 1994, §4, without
+//! fission, death and adaptive radii. In non-uniform sampling (§5.4): forces between overlapping
+//! discs.
 
 use super::{Buckets, Observer, PaperRun, Particle, RadiusRule};
 use glam::DVec3;
@@ -13,12 +13,12 @@ pub(crate) struct Push {
     pub(crate) energy: f64,
 }
 
-/// How a particle was moved, beside where it is now.
+/// Result of moving a particle.
 pub(crate) struct Move {
     /// Target of the move.
     pub(crate) target: DVec3,
-    /// Whether the particle stayed where it was, because the move leads out of the box, off the
-    /// surface or around a fold.
+    /// Whether the particle kept its place, because the move leads out of the box, off the surface
+    /// or around a fold.
     pub(crate) is_kept: bool,
 }
 
@@ -26,22 +26,22 @@ pub(crate) struct Move {
 /// is 1 % of that at 0.
 pub(crate) const GAUSSIAN_REACH: f64 = 3.0;
 
-/// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch
-/// would not push into gaps. With less or more, holes are wider.
+/// Discs of varying sizes push each other up to this distance, in r_i + r_j: discs that barely
+/// touch would not push into gaps. With less or more, holes are wider.
 pub(crate) const OVERLAP_REACH: f64 = 1.15;
 
-/// A particle moves by no more than this in a step, in radii: it stays far from the next one, at 2.
+/// Largest move of a particle in a step, in radii, well below the distance 2 to its neighbours.
 pub(crate) const MAX_MOVE: f64 = 0.35;
 
-/// Weight of a pair by the cosine between its normals: 1 on one sheet, 0 on two that face away from
-/// each other.
+/// Weight of a pair by the cosine between its normals: 1 on one sheet, 0 on two sheets that face
+/// away from each other.
 fn same_sheet_weight(cosine: f64) -> f64 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
 
-/// Force over offset, and energy, of a pair of particles of one size: E = exp(−d²/2σ²) with σ = r,
-/// and each of the two moves along the offset between them times E. The energy is cut off at 3σ and
-/// shifted to zero there.
+/// Force over offset, and energy, of a pair of particles of one radius: E = exp(−d²/2σ²) with σ =
+/// r, and each particle moves along the offset times E. The energy is cut off at 3σ and shifted to
+/// zero there.
 fn gaussian(distance: f64, sigma: f64) -> (f64, f64) {
     let share = distance / sigma;
     let energy = libm::exp(-0.5 * share * share);
@@ -67,7 +67,7 @@ impl<O: Observer> PaperRun<O> {
         }
     }
 
-    /// Puts the particles, which may have moved, into buckets anew.
+    /// Rebuilds the buckets, because particles may have moved.
     pub(crate) fn regroup(&mut self) {
         self.buckets = Buckets::new(2.0 * self.rules.sizes.largest(), &self.particles);
     }
@@ -83,7 +83,7 @@ impl<O: Observer> PaperRun<O> {
     ///
     /// # Differs from the paper
     ///
-    /// Pairs on two sheets do not count.
+    /// Pairs on two different sheets are ignored.
     pub(crate) fn pushes(&self, particle: u32) -> impl Iterator<Item = Push> {
         let own = &self.particles[particle as usize];
         let sizes = self.rules.sizes;

@@ -79,8 +79,8 @@ pub struct Rules {
     /// The angles at which the searches of a particle's children start, by its frame and radius: in
     /// the tangent plane, θ₀ = 0, as in Fig. 4 (left).
     pub(crate) start_angles: fn(&mut ImplicitSurface, &TangentFrame, f64) -> [f64; 6],
-    /// Whether a particle to which a child corresponds leaves the neighbours of the parent (§4.4),
-    /// so that no second child is identified with it. If not, it stays, and so do the new children.
+    /// Whether a matched particle is removed from the neighbours of the parent (§4.4), so that no
+    /// second child matches it. If not, it stays, and so do added children.
     pub(crate) removes_matched: bool,
     /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no
     /// value; 0.7 gives the most particles with six neighbours on smooth surfaces.
@@ -116,9 +116,9 @@ impl Rules {
         }
     }
 
-    /// Whether another particle is of the sheet of one: it faces the same way, and rises by no more
-    /// than 45° from the tangent plane. Nearer than half of the distance at which the two
-    /// correspond, the direction between them tells nothing.
+    /// Whether two particles are on one sheet: they face the same way, and the other rises by at
+    /// most 45° from the tangent plane. Closer than half the match distance, their direction is
+    /// meaningless and the rise does not count.
     pub(crate) fn is_same_sheet(&self, one: &Particle, other: &Particle) -> bool {
         let offset = other.p() - one.p();
         let rise = offset.dot(one.n());

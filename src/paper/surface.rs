@@ -12,16 +12,16 @@ use std::sync::Arc;
 /// Largest number of evaluations in Newton's method. From a good guess it takes two.
 const MAX_NEWTON: u32 = 12;
 
-/// Largest turn of a step on the circle, as the tangent of half the angle: about 23°. Smaller:
-/// large particles take more evaluations.
+/// Largest turn of a step on the circle, as the tangent of half the angle: about 23°. With a
+/// smaller one, large particles take more evaluations.
 const MAX_TURN: f64 = 0.2;
 
-/// Angle from the tangent plane at which a child is given up, 100°: past 90° it lies beneath its
-/// parent, behind a rim.
+/// Angle from the tangent plane at which the search stops, 100°: past 90° the child lies beneath
+/// its parent, behind a rim.
 const MAX_THETA_RAD: f64 = PI * 5.0 / 9.0;
 
-/// "Require: an implicit surface": f = 0 in a box. Clones share the field, and count their
-/// evaluations apart.
+/// "Require: an implicit surface": f = 0 in a box. Clones share the field but count evaluations
+/// separately.
 #[derive(Clone)]
 pub struct ImplicitSurface {
     field: Arc<dyn Field>,
@@ -35,7 +35,7 @@ pub struct ImplicitSurface {
 pub struct Trial {
     /// Number of the evaluation, from 0.
     pub(crate) step: u32,
-    /// Angle on the circle; none in space.
+    /// Angle on the circle; none for steps in space.
     pub(crate) theta_rad: Option<f64>,
     /// Position of the evaluation.
     pub(crate) position: DVec3,
@@ -45,17 +45,17 @@ pub struct Trial {
     pub(crate) slope: f64,
 }
 
-/// A callback receives each evaluation of a search for the surface, in their order.
+/// A callback that receives each evaluation of a search, in order.
 pub(crate) type Note<'a> = &'a mut dyn FnMut(Trial);
 
-/// Result of a search for the surface: a point of it with the unit normal there, or the fate of a
-/// child that finds none.
+/// Result of a search for the surface: a point of it with its unit normal, or the fate of a child
+/// that found none.
 pub(crate) type Landing = Result<(DVec3, DVec3), SlotFate>;
 
 /// The circle C(p, 2r) in the plane (p, N̂, V̂).
 ///
-/// The circle has the points p + 2r (cos θ V̂ + sin θ N̂): the paper's formula leaves the centre
-/// out and takes |N| = |V| = 2r.
+/// Its points are p + 2r (cos θ V̂ + sin θ N̂): the paper's formula omits the centre and takes |N|
+/// = |V| = 2r.
 #[derive(Clone, Copy, Debug)]
 pub struct Circle {
     /// The parent's place, p.
@@ -77,7 +77,7 @@ impl Circle {
         self.centre + (self.direction * cos + self.normal * sin) * self.radius
     }
 
-    /// Derivative of the point by θ.
+    /// Derivative of the point with respect to θ.
     fn tangent(&self, theta_rad: f64) -> DVec3 {
         let (sin, cos) = (libm::sin(theta_rad), libm::cos(theta_rad));
         (self.normal * cos - self.direction * sin) * self.radius
@@ -126,8 +126,8 @@ impl ImplicitSurface {
     }
 
     /// "The most common technique", the Newton–Raphson method: x ← x − f ∇f / |∇f|², until the
-    /// point is on the surface or has moved by more than `reach`. Seeds come to the surface by it,
-    /// and particles that were moved.
+    /// point is on the surface or more than `reach` from its start. It projects seeds and moved
+    /// particles.
     pub(crate) fn land_by_newton(&mut self, start: DVec3, reach: f64, residual: f64, note: Note) -> Landing {
         let mut position = start;
         for step in 0..MAX_NEWTON {
@@ -149,7 +149,7 @@ impl ImplicitSurface {
     }
 }
 
-/// Whether a point counts as a point of the surface that has a normal.
+/// Whether a point counts as on the surface and has a normal.
 fn is_zero(value: f64, slope: f64, residual: f64) -> bool {
     slope > 0.0 && slope.is_finite() && value.abs() <= residual * slope
 }
@@ -167,8 +167,8 @@ impl<O: Observer> PaperRun<O> {
         landing
     }
 
-    /// The position and normal of a child that has landed, if it may be a particle there; otherwise
-    /// its fate is decided.
+    /// The position and normal of a child that has landed and may become a particle; otherwise
+    /// decides its fate.
     pub(crate) fn usable(&mut self, child: ChildSlot, landing: Landing) -> Option<(DVec3, DVec3)> {
         let fate = match landing {
             Err(fate) => fate,
@@ -183,8 +183,8 @@ impl<O: Observer> PaperRun<O> {
         None
     }
 
-    /// The position and normal of a particle that is moved to `target` and brought back to the
-    /// surface; `None` at the border of the box, where the field ends, or around a fold.
+    /// The position and normal of a particle that is moved to `target` and projected to the
+    /// surface; `None` beyond the box or the domain of f, or around a fold.
     pub(crate) fn come_back(&mut self, own: &Particle, target: DVec3, reach: f64) -> Option<(DVec3, DVec3)> {
         let residual = self.rules.residual * own.radius;
         let landing = self.surface.land_by_newton(target, reach, residual, &mut |_| {}).ok();

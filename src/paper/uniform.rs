@@ -1,14 +1,13 @@
 //! Uniform sampling, paper §4: every particle has six children at the distance 2r.
 //!
-//! Six neighbours in a hexagon are the ideal (Fig. 2). In the plane they can be placed at once, so
-//! each particle works in its tangent plane (§4.2) and brings its children back to the surface
-//! (§4.3). Most of them are there already: the first one is the father, and a child near another
-//! particle becomes that particle (§4.4). Only what is left is added and has its own turn later.
-//!
+//! Six neighbours in a hexagon are the ideal (Fig. 2). In the plane they can be placed directly, so
+//! each particle works in its tangent plane (§4.2) and projects its children to the surface (§4.3).
+//! Most of them exist already: the first is the father, and a child near another particle becomes
+//! that particle (§4.4). Only the others are added, to be treated later.
 //! # Differs from the paper
 //!
-//! * The paper does not say when a particle corresponds to a child. Here it is within the match
-//!   radius, on the same sheet of the surface: two sheets may be nearer than that.
+//! * The paper does not define when a particle corresponds to a child. Here it must be within the
+//!   match radius and on the same sheet: two sheets may be nearer than that.
 
 use super::{ChildSlot, Circle, Moment, Nearby, Observer, PaperRun, Particle};
 use crate::math::{SQRT_3, frame_of};
@@ -22,8 +21,8 @@ const SIN_60: f64 = 0.5 * SQRT_3;
 pub(crate) const DIRECTIONS: [[f64; 2]; 6] =
     [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]];
 
-/// Neighbours are gathered within this many radii: a child at 2r meets particles up to 2r + the
-/// match radius from its parent, which is below 2r.
+/// Neighbours are gathered within this many radii: a child at 2r meets particles at up to 2r plus
+/// the match radius, which is below 2r, from its parent.
 pub(crate) const REACH: f64 = 4.0;
 
 /// The tangent frame of a particle (Fig. 3).
@@ -49,7 +48,7 @@ impl TangentFrame {
         Circle { centre: self.p, normal: self.n, direction, radius: 2.0 * radius, start_rad }
     }
 
-    /// The children that are still to be placed: all six of a seed, five of any other particle.
+    /// The slots to fill: all six of a seed, five of any other particle.
     pub(crate) fn slots(&self) -> core::ops::Range<usize> {
         usize::from(!self.is_seed)..6
     }
@@ -126,8 +125,8 @@ impl<O: Observer> PaperRun<O> {
     }
 
     /// "If an existing particle corresponds, the child is replaced by it", otherwise "the child is
-    /// added to the particle set", unless there are as many particles as there may be. Returns the
-    /// fate of the child, and the particle that it is now.
+    /// added to the particle set", unless the limit on particles is reached. Returns the child's
+    /// fate and the particle that it became.
     pub(crate) fn settle(
         &mut self,
         child: ChildSlot,
@@ -143,8 +142,8 @@ impl<O: Observer> PaperRun<O> {
         (fate, particle)
     }
 
-    /// "If an existing particle corresponds": the number of the candidate of the child's sheet that
-    /// is nearest, in r_i + r_j, if it is within the match tolerance.
+    /// "If an existing particle corresponds": the number of the nearest candidate, in r_i + r_j, on
+    /// the child's sheet, if it is within the match tolerance.
     pub(crate) fn corresponding(
         &mut self,
         child: ChildSlot,
