@@ -8,16 +8,16 @@ use crate::quality::Measurements;
 use core::ops::Range;
 use std::io::{self, Write};
 
-/// The particles as they are in a file, placed and facing outward, and what was measured of them;
-/// nothing where they stay what they are.
+/// The particles as placed in the file and facing outward, with their measurements; none if they
+/// are unchanged.
 type Placed = Option<(Particles, Measurements)>;
 
-/// The vertices and faces that a mesh file lists, in the order in which it lists them.
+/// The vertices and faces of a mesh file, in the file's order.
 pub(crate) struct FileContent {
     placed: Placed,
     /// The vertices.
     vertices: Indexed,
-    /// The normals of OBJ, which are numbered apart from the points, where these differ.
+    /// The normals of OBJ, which are numbered separately, if they differ from the points.
     normals: Option<Indexed>,
 }
 
@@ -49,7 +49,7 @@ impl FileContent {
     }
 }
 
-/// A mesh file with what it is written from.
+/// A mesh file and the data it is written from.
 pub(crate) struct File<'a> {
     wish: &'a MeshFile,
     particles: &'a Particles,
@@ -58,7 +58,7 @@ pub(crate) struct File<'a> {
 }
 
 impl<'a> File<'a> {
-    /// The file of these particles, with what they are in it.
+    /// The file of these particles.
     pub(crate) fn new(
         wish: &'a MeshFile,
         particles: &'a Particles,
@@ -73,8 +73,8 @@ impl<'a> File<'a> {
         self.content.normals.as_ref().unwrap_or(&self.content.vertices)
     }
 
-    /// Number of rows: a row takes up to a microsecond to write, but for GLB and 3MF, which are
-    /// written as a whole.
+    /// Number of rows. A row takes up to a microsecond to write; GLB and 3MF are written as one
+    /// row.
     pub(crate) fn rows(&self) -> usize {
         let Indexed { rows, triangles, .. } = &self.content.vertices;
         match self.wish.format {
@@ -90,8 +90,7 @@ impl<'a> File<'a> {
         self.write_rows(0..self.rows(), out)
     }
 
-    /// Writes some of the rows, those at the start with what comes before them. One part after the
-    /// other they make the file.
+    /// Writes some of the rows, and the header before the first. All parts in order make the file.
     ///
     /// # Errors
     ///

@@ -18,7 +18,7 @@ const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// One material, which lets the colours of the vertices through.
+/// One material, through which the vertex colours show.
 const MATERIALS: &str =
     r#""materials":[{"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.7},"doubleSided":true}]"#;
 
@@ -31,10 +31,9 @@ struct BufferColumn {
     bytes: Vec<u8>,
 }
 
-/// Writes the triangles with the normals of their vertices, the generation levels of their
-/// particles as colours and, for programs, as the attribute `_LEVEL`, beside the values that were
-/// added. The z axis, which points up
-/// here, is turned to glTF's y. A mesh without triangles is an empty scene.
+/// Writes the triangles with vertex normals, the particles' generation levels as colours and, for
+/// programs, as the attribute `_LEVEL`, and added values. The z axis, which points up here, is
+/// turned to glTF's y. A mesh without triangles is an empty scene.
 pub(super) fn write(
     particles: &Particles,
     measured: &Measurements,
@@ -107,7 +106,7 @@ fn columns(
             accessor(UNSIGNED_BYTE, "VEC4", r#","normalized":true"#),
             levels.clone().flat_map(|level| colours[level as usize]).collect(),
         ),
-        // Attributes may not be whole numbers of 32 bits.
+        // Attributes cannot be 32-bit integers.
         attribute(
             "_LEVEL",
             accessor(FLOAT, "SCALAR", ""),
@@ -164,11 +163,11 @@ fn document(columns: &[BufferColumn], length: usize, origin: DVec3, record: &Rec
     format!("{{{}}}", members.join(","))
 }
 
-/// Colours of the generation levels up to `last`, linear, with opacity: those of the page on a
-/// light ground around a seed, from blue to sand with a light ring every eight levels. They are
+/// Colours of the generation levels up to `last`, linear, with opacity: those of the page in its
+/// light theme around a seed, from blue to sand with a light ring every eight levels. They are
 /// computed in OKLab (Björn Ottosson, "A perceptual color space for image processing", 2020).
 fn colours(last: u32) -> Vec<[u8; 4]> {
-    /// Levels from one light ring to the next, and exponent of the way from blue to sand.
+    /// Levels from one light ring to the next, and exponent of the blend from blue to sand.
     const RING: f32 = 8.0;
     const WAY: f32 = 1.4;
     (0..=last)

@@ -1,4 +1,4 @@
-//! Triangle meshes of particles as files, and the formats of text and STL among them.
+//! Triangle meshes of particles as files; writes the formats OBJ and STL.
 
 use super::vertices::{Indexed, Vertices};
 use super::{File, FileContent, Placement, RecordText};
@@ -44,7 +44,7 @@ impl MeshFormat {
     }
 }
 
-/// A file of a mesh: its format, the place of the mesh in it, and the record that it carries.
+/// A mesh file: its format, the placement of the mesh, and the record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
     /// Format of the file.
@@ -53,9 +53,9 @@ pub struct MeshFile {
     pub placement: Placement,
     /// The vertices of the particles on sharp edges, in GLB, OBJ and PLY.
     pub vertices: Vertices,
-    /// The bodies that it holds. With [`Vertices::Columns`] the particles of the others stay rows.
+    /// The bodies in the file. With [`Vertices::Columns`] the particles of other bodies stay rows.
     pub bodies: Bodies,
-    /// The record that it carries, but for STL.
+    /// The record, which every format except STL carries.
     pub record: RecordText,
 }
 
@@ -71,8 +71,8 @@ impl From<MeshFormat> for MeshFile {
     }
 }
 
-/// Writes the mesh over `particles` to `out`, which should be buffered. Closed parts face outward,
-/// and their normals with them, whether f is smaller or larger inside; open ones are as f has them.
+/// Writes the mesh over `particles` to `out`, which should be buffered. Closed parts and their
+/// normals face outward, whether f is smaller or larger inside; open parts face as f does.
 /// `measured` is as for [`write`](super::write).
 ///
 /// # Errors
@@ -139,7 +139,7 @@ pub(super) fn stl(
     for triangle in &vertices.triangles[rows] {
         let [a, b, c] = triangle.map(|v| particles.place(vertices.rows[v as usize] as usize));
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        // Four vectors, and two bytes that nobody uses.
+        // Four vectors, and two unused bytes.
         let mut record = [0; 50];
         let floats = [normal, a, b, c].into_iter().flat_map(|v| v.as_vec3().to_array());
         for (bytes, value) in record.chunks_exact_mut(4).zip(floats) {

@@ -26,14 +26,14 @@ use serde::Serialize;
 use std::io::{self, Write};
 use vertices::Indexed;
 
-/// A file format for particles. Their normals follow the gradient: they point to larger f, outward
-/// where f is smaller inside.
+/// A file format for particles. Their normals follow the gradient: they point to larger f, which is
+/// outward if f is smaller inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
     /// Binary little-endian PLY with all columns.
     Ply,
-    /// Comma-separated values of all columns: a line with their names, and one for each row.
+    /// Comma-separated values of all columns: a line with their names, and a line per row.
     Csv,
     /// Text, one `x y z nx ny nz` per line.
     Xyz,
@@ -54,12 +54,12 @@ impl Format {
     }
 }
 
-/// A file of particles: its format, and the record that it carries.
+/// A particle file: its format, and the record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticleFile {
     /// Format of the file.
     pub format: Format,
-    /// The record, which PLY carries. Of the others, a program has it beside the file:
+    /// The record, which PLY carries. For the other formats a program writes it to a separate file:
     /// [`RecordText::document`].
     pub record: RecordText,
 }
@@ -111,7 +111,7 @@ impl Column {
     }
 }
 
-/// The particles that have a column: those of every run, or of some runs alone.
+/// Which particles have a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Presence {
     /// All particles.
@@ -120,7 +120,7 @@ pub(crate) enum Presence {
     Measured,
     /// Particles of a surface of several patches.
     Creased,
-    /// Particles of a cell whose opposite faces have the same ones.
+    /// Particles of a periodic cell, whose opposite faces have the same ones.
     Periodic,
     /// Particles that have followed a moving surface.
     Moved,
@@ -160,7 +160,7 @@ impl fmt::Display for CellValue {
     }
 }
 
-/// Whether coordinates take double precision.
+/// Whether coordinates are in double precision.
 fn is_double(particles: &Particles) -> bool {
     particles.origin != DVec3::ZERO
 }
@@ -213,11 +213,11 @@ pub const COLUMNS: &[Column] = &[
     }),
     column("patch", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.patch[i]))
         .only(Presence::Creased),
-    // The first row of the particle: one where patches meet has a row for each of them.
+    // The first row of the particle: where patches meet, a particle has a row for each patch.
     column("particle", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.first_row(i) as u32))
         .only(Presence::Creased),
-    // The particle that it is on the lowest faces of a cell: itself, but for the images on the
-    // opposite ones.
+    // For an image on an upper face of a periodic cell, the same particle on the lower face; else
+    // the particle itself.
     column("periodic", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.periodic[i]))
         .only(Presence::Periodic),
     column("identity", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.identity[i]))
@@ -236,15 +236,15 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> Vec<&'sta
     COLUMNS.iter().filter(is_there).collect()
 }
 
-/// The values of a row in the columns that were added.
+/// The values of a row in the added columns.
 fn added(measured: &quality::Measurements, row: usize) -> impl Iterator<Item = CellValue> + '_ {
     measured.values.iter().map(move |added| CellValue::Float(added.values[row]))
 }
 
-/// Writes `particles` to `out`, which should be buffered: a record for each of their rows.
-/// `measured` is the report on them: where it is empty, its columns are left out; particles beyond
-/// its end get a valence of 0 and NaN for the rest. Floats in text are the shortest that read back
-/// to the same bits. PLY carries the record, in comments.
+/// Writes `particles` to `out`, which should be buffered: a record per row. `measured` is the
+/// report on them: if it is empty, its columns are left out; particles beyond its end get a valence
+/// of 0 and NaN for the rest. Floats in text are the shortest that read back to the same bits. PLY
+/// carries the record, in comments.
 ///
 /// # Errors
 ///
@@ -290,7 +290,7 @@ fn ply_columns(
 }
 
 /// PLY of a mesh: rows of vertices and of triangles. All properties of a vertex have one type,
-/// since there are readers that take no others.
+/// because some readers require it.
 fn ply_mesh(
     particles: &Particles,
     measured: &quality::Measurements,
@@ -355,8 +355,8 @@ fn ply_header<'a>(
     writeln!(out, "end_header")
 }
 
-/// CSV begins with the names of the columns, which is the line that spreadsheets and data frames
-/// take for them: a record has no place in it.
+/// CSV begins with the names of the columns, as spreadsheets and data frames expect, so there is no
+/// place for a record.
 fn csv(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
     let columns = columns(particles, measured);
     let of_program = measured.values.iter().map(|added| &*added.name);

@@ -70,8 +70,7 @@ impl UpAxis {
     /// Every axis with its name.
     pub const ALL: [(&str, Self); 3] = [("x", Self::X), ("y", Self::Y), ("z", Self::Z)];
 
-    /// Coordinates of the formula, turned until the axis is z. The turn changes the places of the
-    /// coordinates alone, so that it is exact.
+    /// Permutes the coordinates of the formula so that this axis becomes z; this is exact.
     fn turned<T: Copy>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
             Self::X => [y, z, x],
@@ -88,12 +87,12 @@ impl UpAxis {
 pub struct Placement {
     /// Length of a unit of the formula, in the unit of the file; positive.
     pub scale: f64,
-    /// Unit of the file. 3MF names it, and GLB is in metres, to which lengths are converted; other
-    /// formats have no place for it. Without one, numbers stay what they are: metres in GLB,
+    /// Unit of the file. 3MF names it, and for GLB lengths are converted to metres; other formats
+    /// cannot express it. Without a unit, numbers are not converted: they mean metres in GLB,
     /// millimetres in 3MF.
     pub unit: Option<Unit>,
-    /// Axis of the formula that points up in the file: along z, but in GLB along y, as its
-    /// specification has it.
+    /// Axis of the formula that points up in the file: along z, in GLB along y, as its
+    /// specification requires.
     pub up: UpAxis,
 }
 
@@ -104,8 +103,7 @@ impl Default for Placement {
 }
 
 impl Placement {
-    /// Particles and what was measured of them, as they are in a file; nothing where they stay what
-    /// they are.
+    /// The particles and their measurements as placed in a file; none if they are unchanged.
     pub(crate) fn placed(
         &self,
         format: MeshFormat,

@@ -1,18 +1,17 @@
-//! The record of a file, from which it can be made again: JSON, in each format at a place of its
-//! own.
+//! The record of a file, from which the file can be made again: JSON, embedded differently in each
+//! format.
 //!
-//! PLY and OBJ carry it in comments, 3MF in its description, GLB in the extras of its asset; beside
-//! a file that has no place for it stands a file of JSON. What it says is the caller's affair; here
-//! it is text.
+//! PLY and OBJ carry it in comments, 3MF in its description, GLB in the extras of its asset; for
+//! other formats it is a separate JSON file. Its contents are up to the caller; here it is text.
 
-/// The word before a record.
+/// The word that precedes a record.
 const MARK: &str = "marching_particles";
 
 /// The longest comment line, in characters. MeshLab reads no PLY header line of more than 512.
 const LONGEST_LINE: usize = 200;
 
-/// A record as the formats carry it: its mark and the JSON, without the characters that end a
-/// comment or begin a tag.
+/// A record as the formats carry it: a JSON object without the characters that end a comment or
+/// begin a tag.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordText(Option<String>);
 
@@ -23,7 +22,7 @@ impl RecordText {
         let mut text = String::with_capacity(json.len());
         for unit in json.encode_utf16() {
             match u8::try_from(unit) {
-                // Outside of strings these stand nowhere but between values.
+                // Outside strings these occur only between values.
                 Ok(b'\n' | b'\r' | b'\t') => {}
                 Ok(byte @ (b' '..=b'~')) if !matches!(byte, b'<' | b'>' | b'&') => text.push(byte.into()),
                 _ => text += &format!("\\u{unit:04x}"),
@@ -32,14 +31,14 @@ impl RecordText {
         Self(Some(text))
     }
 
-    /// The record as comments, each after the words that begin one; nothing without a record. No
-    /// line is longer than [`LONGEST_LINE`]: the text goes on after the mark of the next line.
+    /// The record as comments, each begun by `begin`; empty without a record. A text longer than
+    /// [`LONGEST_LINE`] continues after the mark of the next line.
     pub(super) fn comment(&self, begin: &str) -> String {
         let mut rest = self.0.as_deref().unwrap_or_default();
         let mut lines = String::new();
         while !rest.is_empty() {
             let most = (LONGEST_LINE - begin.len() - MARK.len() - 2).min(rest.len());
-            // Programs that write the comments again may drop spaces at the ends of lines.
+            // Programs that rewrite comments may drop spaces at the ends of lines.
             let is_safe = |&at: &usize| {
                 let ends = [rest.as_bytes()[at - 1], rest.as_bytes().get(at).copied().unwrap_or(b'}')];
                 !ends.contains(&b' ')
@@ -52,7 +51,7 @@ impl RecordText {
         lines
     }
 
-    /// The record as the content of a file of JSON beside another one; nothing without a record.
+    /// The record as the content of a separate JSON file; none without a record.
     #[must_use]
     pub fn document(&self) -> Option<String> {
         self.0.as_ref().map(|json| format!("{{\"{MARK}\":{json}}}\n"))
@@ -63,20 +62,19 @@ impl RecordText {
         self.0.as_ref().map(|json| format!("{MARK} {json}"))
     }
 
-    /// The record as a member of an object of JSON, with a comma before it; nothing without a
-    /// record.
+    /// The record as a member of a JSON object, after a comma; empty without a record.
     pub(super) fn member(&self) -> String {
         self.0.as_ref().map_or(String::new(), |json| format!(r#","extras":{{"{MARK}":{json}}}"#))
     }
 
-    /// The JSON of the record in a file; none if there is no record in it.
+    /// The JSON of the record in a file, if it has one.
     #[must_use]
     pub fn find(file: &[u8]) -> Option<String> {
         let at = file.windows(MARK.len()).position(|window| window == MARK.as_bytes())?;
         let from = file[..at].iter().rposition(|&byte| is_line_end(byte)).map_or(0, |end| end + 1);
         let prefix = [&file[from..at], MARK.as_bytes(), b" "].concat();
         let rest = &file[at + MARK.len()..];
-        // Between the mark and the object there are a quote, a colon and a space at most.
+        // Between the mark and the object there are at most a quote, a colon and a space.
         let begin = rest.iter().position(|&byte| byte == b'{').filter(|&begin| begin <= 3)?;
         let (mut text, mut rest) = line(&rest[begin..]);
         let mut whole = text.to_vec();
@@ -101,7 +99,7 @@ fn line(text: &[u8]) -> (&[u8], &[u8]) {
     (line, rest)
 }
 
-/// Number of bytes of the object of JSON with which a text begins.
+/// Length in bytes of the JSON object at the start of a text.
 fn length(text: &[u8]) -> Option<usize> {
     let (mut depth, mut is_string, mut is_escaped) = (0_u32, false, false);
     for (k, &byte) in text.iter().enumerate() {

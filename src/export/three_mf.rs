@@ -1,8 +1,8 @@
 //! 3MF: a mesh for printers, with its unit.
 //!
 //! The specification is the 3MF Consortium's, "3D Manufacturing Format, Core Specification" 1.3. A
-//! file is a ZIP archive of a document of XML and two that lead to it. The entries are stored as
-//! they are, which every reader takes: packing would need code of several times this size.
+//! file is a ZIP archive of an XML document and two that refer to it. The entries are not
+//! compressed, which every reader accepts: compression would need several times as much code.
 
 use super::placement::{Placement, Unit};
 use super::record::RecordText;
@@ -16,7 +16,7 @@ const CONTENT_TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"#;
 
-/// Writes the triangles over their vertices. A mesh without triangles is a model without an object.
+/// Writes the triangles and vertices. Without triangles the model contains no object.
 pub(super) fn write(
     particles: &Particles,
     vertices: &Indexed,
@@ -77,8 +77,8 @@ impl Archive<'_> {
     fn add(&mut self, name: &str, content: &[u8]) -> io::Result<()> {
         let size =
             u32::try_from(content.len()).map_err(|_| io::Error::other("a 3MF file holds up to 4 GiB"))?;
-        // Version 2.0, no flags, stored, and the first moment of the format's clock: the same mesh
-        // gives the same file.
+        // Version 2.0, no flags, stored, and the earliest date of the format: the same mesh gives
+        // the same file.
         let mut fields = [20_u16, 0, 0, 0, 0x21].map(u16::to_le_bytes).as_flattened().to_vec();
         fields.extend([crc(content), size, size].map(u32::to_le_bytes).as_flattened());
         fields.extend([name.len() as u16, 0].map(u16::to_le_bytes).as_flattened());
@@ -104,7 +104,7 @@ impl Archive<'_> {
     }
 }
 
-/// Cyclic redundancy check of ZIP: CRC-32 of ISO 3309, bit by bit for each value of a byte.
+/// CRC-32 of ZIP (ISO 3309), from a table with a value per byte.
 fn crc(bytes: &[u8]) -> u32 {
     let table: [u32; 256] = core::array::from_fn(|byte| {
         (0..8).fold(byte as u32, |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 })

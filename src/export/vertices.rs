@@ -5,22 +5,22 @@ use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// How particles become vertices of a mesh file. It makes a difference on sharp edges, where a
+/// How particles become vertices of a mesh file. The choices differ on sharp edges, where a
 /// particle has a normal for each side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Vertices {
-    /// One vertex for each particle, so that the mesh is closed where the surface is. On a sharp
-    /// edge it has the mean of the normals of the sides.
+    /// One vertex per particle, so that the mesh is closed where the surface is. On a sharp edge it
+    /// has the mean of the sides' normals.
     #[default]
     Joined,
-    /// On a sharp edge a vertex for each side, with the normal of that side. In OBJ the points stay
-    /// joined, and faces name their normals apart from them.
+    /// On a sharp edge a vertex for each side, with its normal. In OBJ the points stay joined, and
+    /// faces refer to normals separately.
     Split,
-    /// A vertex for each row of the particles, on seams without an edge as well, in their order,
-    /// with all columns where the format takes them: PLY.
+    /// A vertex for each row of the particles, also on smooth seams, in their order, with all
+    /// columns if the format is PLY.
     Columns,
 }
 
@@ -34,7 +34,7 @@ pub struct VerticesChoice {
     pub label: &'static str,
     /// Explanation in one line.
     pub help: &'static str,
-    /// Extensions of the formats for which it makes a difference.
+    /// Extensions of the formats in which it makes a difference.
     pub formats: &'static [&'static str],
 }
 
@@ -64,7 +64,7 @@ pub const VERTICES: &[VerticesChoice] = &[
 ];
 
 impl Vertices {
-    /// The word by which an interface knows the way.
+    /// The word for the way in interfaces.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -75,8 +75,8 @@ impl Vertices {
     }
 }
 
-/// A mesh as lists of vertices and triangles, as files have it: closed parts face outward, and the
-/// normals with them.
+/// A mesh as lists of vertices and triangles, as in files: closed parts and their normals face
+/// outward.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshBuffers {
     /// Position of each vertex, in the coordinates of the formula.
@@ -85,13 +85,13 @@ pub struct MeshBuffers {
     pub normals: Vec<Vec3>,
     /// Triples of vertices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// For each vertex, the row of the particles that it is, by which it has their other columns.
+    /// For each vertex, its row among the particles, which leads to the other columns.
     pub rows: Vec<u32>,
 }
 
 impl MeshBuffers {
-    /// The mesh over the rows of `particles`. Vertices are in the order of the rows; those in no
-    /// triangle are left out, but for [`Vertices::Columns`].
+    /// The mesh over the rows of `particles`. Vertices are in the order of rows; except for
+    /// [`Vertices::Columns`], those in no triangle are left out.
     ///
     /// # Panics
     ///
@@ -106,7 +106,7 @@ impl MeshBuffers {
     }
 }
 
-/// The normals of all rows, turned where the mesh was turned to face outward; none if it was not.
+/// The normals of all rows, reversed on reversed triangles; none if no triangle was reversed.
 pub(super) fn outward_normals(mesh: &Triangulation, particles: &Particles) -> Option<Vec<Vec3>> {
     let turned: Vec<usize> = (0..mesh.triangles.len()).filter(|&k| mesh.is_turned(k)).collect();
     if turned.is_empty() {
@@ -157,7 +157,7 @@ impl Indexed {
         }
     }
 
-    /// The vertices of triangles over rows, numbered anew.
+    /// The vertices of triangles over rows, renumbered.
     fn over(mut triangles: Vec<[u32; 3]>, normals: &[Vec3]) -> Self {
         let mut number = vec![0; normals.len()];
         triangles.iter().flatten().for_each(|&row| number[row as usize] = 1);
@@ -169,7 +169,7 @@ impl Indexed {
         Self { rows, normals, triangles }
     }
 
-    /// The mean of the normals of each vertex: those of the rows at its corners, each once.
+    /// The mean normal of each vertex, over the distinct rows at its corners.
     fn mean_normals(&self, corners: impl Iterator<Item = [u32; 3]>, normals: &[Vec3]) -> Vec<Vec3> {
         let mut sums = vec![(Vec3::ZERO, 0_u32); self.rows.len()];
         let mut is_met = vec![false; normals.len()];
@@ -181,8 +181,8 @@ impl Indexed {
                 }
             }
         }
-        // A lone normal keeps its bits, and opposite ones, at the edge of a blade, leave that of
-        // the first row.
+        // A single normal keeps its bits; for opposite ones, at the edge of a blade, the first
+        // row's is taken.
         let mean = |(&own, (sum, count)): (&Vec3, (Vec3, u32))| {
             if count < 2 { sum } else { sum.try_normalize().unwrap_or(own) }
         };
