@@ -1,6 +1,6 @@
-//! Sets of numbers that are joined one by one.
+//! Disjoint sets of numbers.
 
-/// A union–find forest over the numbers 0 to n − 1. The least number of a set stands for it.
+/// A union–find forest over the numbers 0 to n − 1. The least number of a set represents it.
 #[derive(Debug)]
 pub(crate) struct Forest {
     /// A number of the same set that is smaller, or the number itself if it is the least.
@@ -13,14 +13,14 @@ impl Forest {
         Self::with_links((0..count as u32).collect())
     }
 
-    /// The forest in which every number is in the set of the number that it is linked to, which
-    /// must not be larger.
+    /// The forest in which every number is in the set of the number that it links to, which must
+    /// not be larger.
     pub(crate) fn with_links(up: Vec<u32>) -> Self {
         debug_assert!((0..).zip(&up).all(|(i, &up)| up <= i), "a link leads to a smaller number");
         Self { up }
     }
 
-    /// The least number of the set of `i`. The way to it is halved.
+    /// The least number of the set of `i`. Path halving shortens later searches.
     pub(crate) fn find(&mut self, mut i: u32) -> u32 {
         while self.up[i as usize] != i {
             let up = self.up[self.up[i as usize] as usize];

@@ -15,8 +15,8 @@
 
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// 1.5 · 2²³: adding it to a number below 2²² in size rounds that number to an integer, which then
-/// stands in the low bits of the sum.
+/// 1.5 · 2²³: adding it to a number with an absolute value below 2²² rounds that number to an
+/// integer, which is then in the low bits of the sum.
 pub(crate) const ROUNDER: f32 = 12_582_912.0;
 
 /// 1.5 · 2⁵²: [`ROUNDER`] in double precision.
@@ -62,7 +62,7 @@ pub fn floor(a: f32) -> f32 {
     if size < ALL_INTEGERS { floor } else { a }
 }
 
-/// `a` cut to `lo … hi`; NaN stays.
+/// `a` clamped to `lo … hi`; NaN stays NaN.
 #[inline]
 fn cut(a: f32, lo: f32, hi: f32) -> f32 {
     let a = if a < lo { lo } else { a };
@@ -137,7 +137,7 @@ pub fn log10(a: f32) -> f32 {
     ln(a) * core::f32::consts::LOG10_E
 }
 
-/// `result` where `a` is positive and finite, and the limits elsewhere.
+/// `result` for positive finite `a`, else the limits.
 #[inline]
 fn logarithm_edges(a: f32, result: f32) -> f32 {
     let result = if a < f32::INFINITY { result } else { a };
@@ -159,7 +159,7 @@ fn exponent_and_mantissa(a: f32) -> (f32, f32) {
     (if subnormal { e - 23.0 } else { e }, m)
 }
 
-/// The quadrant of an angle and what is left of it: a = k π/2 + r, |r| ≤ π/4; the reduction runs in
+/// The quadrant k of an angle and the remainder: a = k π/2 + r, |r| ≤ π/4. The reduction is in
 /// double precision, so that r keeps its relative accuracy up to |a| of about 10⁶.
 #[inline]
 fn quadrant(a: f32) -> (u32, f32) {
@@ -167,7 +167,7 @@ fn quadrant(a: f32) -> (u32, f32) {
     let t = a * core::f64::consts::FRAC_2_PI + ROUNDER_F64;
     let n = t - ROUNDER_F64;
     let r = (a - n * HALF_PI[0]) - n * HALF_PI[1];
-    // Past 10¹⁵ the rounding fails; the cut keeps sine and cosine within −1 … 1 there.
+    // Past 10¹⁵ the rounding fails; clamping keeps sine and cosine within −1 … 1 there.
     (t.to_bits() as u32, cut(r as f32, -FRAC_PI_4, FRAC_PI_4))
 }
 
@@ -185,7 +185,7 @@ fn cosine_polynomial(r: f32) -> f32 {
     ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0
 }
 
-/// The sine in quadrant `k`, from the sine and cosine of what is left.
+/// The sine in quadrant `k`, from the sine and cosine of the remainder.
 #[inline]
 fn turned(k: u32, sine: f32, cosine: f32) -> f32 {
     let value = if k & 1 == 0 { sine } else { cosine };
@@ -282,7 +282,7 @@ pub fn atan(a: f32) -> f32 {
     (base + atan_polynomial(above / below)).copysign(a)
 }
 
-/// The angle of the point (`across`, `up`) in radians, −π to π; 0 or ±π at the origin, by the signs
+/// The angle of the point (`across`, `up`) in radians, −π to π; at the origin 0 or ±π, by the signs
 /// of the zeros.
 #[inline]
 #[must_use]
@@ -341,7 +341,7 @@ pub fn tanh(a: f32) -> f32 {
     if size < 0.625 { near } else { far }
 }
 
-/// Cube root, of negative numbers too; correct to the last bit but for rare ties.
+/// Cube root, also of negative numbers; correct to the last bit except for rare ties.
 #[inline]
 #[must_use]
 pub fn cbrt(a: f32) -> f32 {
@@ -365,16 +365,16 @@ pub fn cbrt(a: f32) -> f32 {
     if a == 0.0 || size == f32::INFINITY { a } else { root }
 }
 
-/// a^b: for negative `a`, a number if `b` is an integer and NaN otherwise; a^0 = 1; NaN if either
-/// is NaN. The logarithm and the exponential run in double precision, for 1 ulp at any size of the
-/// result.
+/// a^b: for negative `a`, a number if `b` is an integer, else NaN; a^0 = 1; NaN if either is NaN.
+/// The logarithm and the exponential are in double precision, for an error of 1 ulp at any size of
+/// the result.
 #[inline]
 #[must_use]
 pub fn pow(a: f32, b: f32) -> f32 {
     let size = a.abs();
     let (e, m) = exponent_and_mantissa(size);
     let m = f64::from(m);
-    // ln m = 2 artanh s, by its series: s² ≤ 0.0295, the term left out is below 2e-12.
+    // ln m = 2 artanh s by its series: s² ≤ 0.0295, the first omitted term is below 2e-12.
     let s = (m - 1.0) / (m + 1.0);
     let z = s * s;
     let series = (((((z * (1.0 / 13.0) + 1.0 / 11.0) * z + 1.0 / 9.0) * z + 1.0 / 7.0) * z + 1.0 / 5.0) * z
@@ -390,7 +390,7 @@ pub fn pow(a: f32, b: f32) -> f32 {
     let t = w * core::f64::consts::LOG2_E + ROUNDER_F64;
     let r = w - (t - ROUNDER_F64) * core::f64::consts::LN_2;
     let k = t.to_bits() as i32;
-    // e^r by its series: |r| ≤ 0.35, the term left out is below 3e-10.
+    // e^r by its series: |r| ≤ 0.35, the first omitted term is below 3e-10.
     let p = (((((((r * (1.0 / 40320.0) + 1.0 / 5040.0) * r + 1.0 / 720.0) * r + 1.0 / 120.0) * r
         + 1.0 / 24.0)
         * r
@@ -402,7 +402,7 @@ pub fn pow(a: f32, b: f32) -> f32 {
         * r
         + 1.0;
     let positive = scaled(p as f32, k);
-    // 0 · ∞ in the exponent: 0^0, ∞^0 and 1^∞, all of them 1.
+    // The exponent 0 · ∞ is NaN: 0^0, ∞^0 and 1^∞ are all 1.
     let positive = if exponent.is_nan() { 1.0 } else { positive };
     let whole = floor(b) == b;
     let half = 0.5 * b;
@@ -410,7 +410,7 @@ pub fn pow(a: f32, b: f32) -> f32 {
     let flipped = if odd { -positive } else { positive };
     let defined = if whole { flipped } else { f32::NAN };
     let result = if a.is_sign_negative() { defined } else { positive };
-    // −0 has a sign bit but no sign: its powers are those of 0.
+    // −0 has a sign bit, but its powers are those of 0.
     let result = if a == 0.0 && !whole { positive } else { result };
     if a.is_nan() || b.is_nan() { f32::NAN } else { result }
 }

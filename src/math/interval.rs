@@ -3,10 +3,10 @@
 use super::ROUNDING;
 use core::ops::{Add, Mul, Neg};
 
-/// A closed interval of numbers. It is empty where the lower end is the larger one.
+/// A closed interval of numbers. It is empty if the lower end exceeds the upper.
 ///
-/// The operators take ends that are not NaN. They do not round outward: a proof by them
-/// [adds a slack](Interval::widened) for what rounding may have moved.
+/// The operators take ends that are not NaN. They do not round outward: a proof that uses them
+/// [adds a slack](Interval::widened) for rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower end, which may be −∞.
@@ -57,7 +57,7 @@ impl Interval {
         }
     }
 
-    /// Whether 0 lies outside. It does not where an end is NaN.
+    /// Whether 0 is outside; false if an end is NaN.
     #[must_use]
     pub fn excludes_zero(self) -> bool {
         self.lo > 0.0 || self.hi < 0.0
@@ -75,16 +75,16 @@ impl Interval {
         Self::new(self.lo - slack, self.hi + slack)
     }
 
-    /// The interval widened by `swing`, and by what the few operations that lead here may have been
-    /// rounded by: the mean value form (Moore 1966), where this bounds a function in the middle of
-    /// a box and the function changes by at most `swing` from there.
+    /// The interval widened by `swing`, and by the rounding of the few operations that led to it.
+    /// This is the mean value form (Moore 1966): the interval bounds a function at the centre of a
+    /// box, and the function changes by at most `swing` from there.
     #[must_use]
     pub fn mean_value(self, swing: f64) -> Self {
         let slack = ROUNDING * (swing + self.lo.abs() + self.hi.abs());
         Self::new(self.lo - swing - slack, self.hi + swing + slack)
     }
 
-    /// The part within another interval, of which an end that is NaN cuts nothing off.
+    /// The intersection with another interval; an end that is NaN does not cut.
     #[must_use]
     pub fn cut_to(self, other: Self) -> Self {
         let lo = if other.lo > self.lo { other.lo } else { self.lo };

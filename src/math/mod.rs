@@ -1,5 +1,5 @@
-//! Small numeric building blocks that every other module may use: SIMD lanes, intervals, symmetric
-//! matrices, tangent frames, boxes and the tolerances shared across the crate.
+//! Small numeric building blocks for every other module: SIMD lanes, intervals, symmetric matrices,
+//! tangent frames, boxes and shared tolerances.
 
 mod forest;
 pub mod functions;
@@ -68,11 +68,11 @@ pub fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{} {}", grouped(count), if count == 1 { one } else { many })
 }
 
-/// The index of nothing: no particle, triangle, block or component.
+/// The index that stands for none: no particle, triangle, block or component.
 pub const NONE: u32 = u32::MAX;
 
-/// Largest relative error of a result in double precision after as many operations as the longest
-/// formula has: each rounds once.
+/// Largest relative error in double precision after as many operations as the longest formula has,
+/// each of which rounds once.
 pub(crate) const ROUNDING: f64 = 4096.0 * f64::EPSILON;
 
 /// Largest relative error of a result in single precision after a few operations.
@@ -84,14 +84,14 @@ pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// Area of the cell of a hexagonal lattice, whose spacing is 2r, over r².
 pub(crate) const HEXAGONAL_CELL: f64 = 2.0 * SQRT_3;
 
-/// Sine of the angle between two parts of a surface from which on they meet in an edge: one degree,
-/// less than light and shadow show.
+/// Sine of the least angle between two parts of a surface that counts as an edge: one degree, less
+/// than light and shadow show.
 pub(crate) const SHARP: f64 = 0.0175;
 
 /// The FNV-1a hash of no bytes.
 pub(crate) const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
 
-/// The FNV-1a hash of the bytes of which `hash` is that, and of more.
+/// The FNV-1a hash of some bytes, which `hash` is the hash of, followed by more.
 pub(crate) fn fnv(hash: u64, more: &[u8]) -> u64 {
     more.iter().fold(hash, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
@@ -107,8 +107,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Points of a grid with `side` points on every axis, off the faces of the box and its planes
-    /// of symmetry.
+    /// Points of a grid with `side` points on every axis, none on the faces of the box or its
+    /// planes of symmetry.
     pub(crate) fn spread(&self, side: usize) -> impl ExactSizeIterator<Item = DVec3> {
         let (lo, size) = (self.lo(), self.size());
         (0..side * side * side).map(move |i| {
@@ -129,13 +129,13 @@ impl Bounds {
         Self { min: lo.to_array(), max: hi.to_array() }
     }
 
-    /// The box that holds `p` alone.
+    /// The box that contains only `p`.
     #[must_use]
     pub const fn point(p: DVec3) -> Self {
         Self::new(p, p)
     }
 
-    /// The smallest box that holds these points; of none, one from +∞ to −∞.
+    /// The smallest box that holds these points; for no points, one from +∞ to −∞.
     pub(crate) fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (lo, hi) = points.into_iter().fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)));
@@ -196,7 +196,7 @@ impl Bounds {
         self.size().length()
     }
 
-    /// The halves of the box across its longest side.
+    /// The halves of the box, cut at the middle of its longest side.
     pub(crate) fn halves(&self) -> [Self; 2] {
         let axis = self.size().max_position();
         let middle = self.middle().to_array()[axis];
@@ -205,22 +205,22 @@ impl Bounds {
         [low, high]
     }
 
-    /// Largest size of a coordinate of a corner.
+    /// Largest absolute value of a coordinate of a corner.
     pub(crate) fn farthest(&self) -> f64 {
         self.lo().abs().max(self.hi().abs()).max_element()
     }
 
-    /// Largest coordinate of a corner, relative to the diagonal, of a box that needs no origin of
-    /// its own. There, rounding to single precision moves a particle of the default radius by a
-    /// twenty-five-thousandth of it.
+    /// Largest coordinate of a corner, relative to the diagonal, for a box without an origin of its
+    /// own. Rounding to single precision moves a particle of the default radius by at most 1/25,000
+    /// of the radius there.
     const NEAR: f64 = 4.0;
 
-    /// The point from which the particles in this box are best counted: the origin of the
-    /// coordinates, unless the box is so far from it that single precision would round the places
-    /// of particles noticeably; then a point near the middle of the box.
+    /// The origin of the particles' single-precision coordinates in this box: that of the formula,
+    /// unless the box is so far from it that rounding would move particles noticeably; then a point
+    /// near the middle of the box.
     ///
-    /// Its coordinates have few digits, so that adding it to a particle's place in double precision
-    /// is all but exact.
+    /// Its coordinates have few digits, so that adding it to a particle's position in double
+    /// precision is almost exact.
     #[must_use]
     pub fn local_origin(&self) -> DVec3 {
         let diagonal = self.diagonal();
@@ -267,21 +267,20 @@ impl Bounds {
         Self::new(self.lo().min(other.lo()), self.hi().max(other.hi()))
     }
 
-    /// The box of the points that are in both. Where they have none in common, a smallest corner is
-    /// above the largest.
+    /// The intersection of two boxes. If it is empty, a smallest corner is above the largest.
     #[must_use]
     pub fn overlap(&self, other: &Self) -> Self {
         Self::new(self.lo().max(other.lo()), self.hi().min(other.hi()))
     }
 
-    /// Diagonals of a box with which the squares of radii are normal numbers in single precision.
+    /// Diagonals of a box for which squared radii are normal numbers in single precision.
     pub const DIAGONALS: RangeInclusive<f64> = 1e-12..=1e12;
 
-    /// Smallest side of a box, over its diagonal: in single precision it is a normal number.
+    /// Smallest side of a box, over its diagonal: a normal number in single precision.
     pub const THINNEST: f64 = 1e-12;
 
-    /// Largest coordinate of a corner relative to the diagonal. There, the single precision in
-    /// which a picture is drawn moves a particle of the default radius by a hundredth of it.
+    /// Largest coordinate of a corner relative to the diagonal. There, the single precision of the
+    /// picture moves a particle of the default radius by a hundredth of it.
     pub const FARTHEST_CORNER: f64 = 1e3;
 
     /// Whether [`Bounds::check`] finds no fault.
@@ -290,7 +289,7 @@ impl Bounds {
         self.check().is_ok()
     }
 
-    /// Checks that particles can be put in the box and drawn there: the diagonal is one of
+    /// Checks that particles can be placed in the box and drawn: the diagonal is in
     /// [`Bounds::DIAGONALS`], no side is shorter than [`Bounds::THINNEST`] of it, and no coordinate
     /// is larger than [`Bounds::FARTHEST_CORNER`] diagonals.
     ///
@@ -310,17 +309,17 @@ impl Bounds {
     }
 }
 
-/// Why particles cannot be put in a box.
+/// Why particles cannot be placed in a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BoxError {
     /// A coordinate is NaN or infinite.
     #[error("the box has a corner that is not finite")]
     NotFinite,
-    /// The corners are the same along an axis, or the other way round.
+    /// A corner is not below the other along some axis.
     #[error("the box must have a positive size on every axis")]
     Empty,
-    /// The diagonal is not one of [`Bounds::DIAGONALS`].
+    /// The diagonal is outside [`Bounds::DIAGONALS`].
     #[error("the box must have a diagonal between {:e} and {:e}", Bounds::DIAGONALS.start(), Bounds::DIAGONALS.end())]
     Size,
     /// A side is shorter than [`Bounds::THINNEST`] of the diagonal.
@@ -353,7 +352,7 @@ pub struct Sym3<T> {
 }
 
 impl<T: Copy> Sym3<T> {
-    /// The matrix with the entry of row i and column j that `entry` gives for j ≥ i.
+    /// The matrix whose entry in row i and column j ≥ i is `entry(i, j)`.
     pub(crate) fn by(entry: impl Fn(usize, usize) -> T) -> Self {
         Self {
             xx: entry(0, 0),
@@ -434,15 +433,15 @@ impl Sym3<f32> {
     }
 }
 
-/// Fills a column with `len` times `value`, and allocates no more than that takes.
+/// Fills a column with `len` times `value`, without spare capacity.
 pub(crate) fn refill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     column.clear();
     column.reserve_exact(len);
     column.resize(len, value);
 }
 
-/// Resizes a column, where it has to grow with room for a 32nd more: one that grows by few items
-/// does not take up twice as much.
+/// Resizes a column. If it has to grow, it gets a spare capacity of a 32nd: growing by a few items
+/// must not double its memory.
 pub(crate) fn grow<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     if len > column.capacity() {
         column.reserve_exact(len - column.len() + column.len() / 32);

@@ -1,8 +1,8 @@
-//! Newton's method for one point in double precision: to a surface, to the curve in which two meet,
-//! or to the point in which three do.
+//! Newton's method for one point in double precision: to a surface, to the intersection curve of
+//! two, or to a common point of three.
 //!
-//! Each step is the shortest after which the functions are zero to first order. `field::descent`
-//! moves batches of points in single precision.
+//! Each step is the shortest that makes the functions zero to first order. `field::descent` moves
+//! batches of points in single precision.
 
 use glam::{DMat3, DVec3};
 
@@ -22,7 +22,7 @@ pub(crate) fn step_to_curve([(f, u), (g, v)]: [Slope; 2]) -> (DVec3, DVec3) {
 }
 
 /// The step to the common zero of three functions, to be subtracted from the point, and the volume
-/// that the unit vectors along their gradients span.
+/// spanned by the unit vectors along their gradients.
 pub(crate) fn step_to_corner(slopes: [Slope; 3]) -> (DVec3, f64) {
     let [(f, u), (g, v), (h, w)] = slopes.map(|(value, gradient)| {
         let slope = gradient.length();
@@ -32,11 +32,11 @@ pub(crate) fn step_to_corner(slopes: [Slope; 3]) -> (DVec3, f64) {
     (rows.inverse() * DVec3::new(f, g, h), rows.determinant().abs())
 }
 
-/// Largest number of evaluations of Newton's method from a good guess, which takes two to five:
+/// Largest number of evaluations of Newton's method. From a good guess two to five suffice, since
 /// each step doubles the digits.
 pub(crate) const STEPS: u32 = 12;
 
-/// Limits of the way of a point.
+/// Limits of Newton's method for a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepLimits {
     /// Largest number of steps.
@@ -51,15 +51,14 @@ pub(crate) struct StepLimits {
 }
 
 impl StepLimits {
-    /// No limit but a number of steps.
+    /// Only the number of steps is limited.
     pub(crate) const fn steps(steps: u32) -> Self {
         Self { steps, reach: f64::MAX, at_rest: 0.0, share_at_rest: 0.0 }
     }
 }
 
-/// The point at which the steps from `start` come to rest within these limits, and what `step_at`
-/// has returned beside the last step. None also where `step_at` has no step, or one that is no
-/// number.
+/// The point at which the steps from `start` come to rest within these limits, with the second
+/// value of `step_at` at the last step. None also if `step_at` returns none or a step that is NaN.
 pub(crate) fn land<T>(
     start: DVec3,
     limits: StepLimits,

@@ -1,4 +1,4 @@
-//! The numbers over which a closed formula is written once: `f32`, `f64` and lanes.
+//! The number types for which a closed formula is written once: `f32`, `f64` and lanes.
 
 use super::Lanes;
 use core::ops::{Add, Div, Mul, Neg, Sub};

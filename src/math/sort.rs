@@ -1,11 +1,11 @@
-//! Sorting by keys that are whole numbers.
+//! Sorting by integer keys.
 //!
-//! The standard library compiles its sorting algorithm anew for each type and each comparison, some
-//! 10 kB of WebAssembly a copy. So items are sorted as `u64` keys or, with the place of each item
-//! below its key, as `u128`. Lists of indices are sorted as they are.
+//! The standard library's sort is compiled for each type and comparison, about 10 kB of WebAssembly
+//! each time. So items are sorted as `u64` keys or, with each item's index below its key, as
+//! `u128`. Lists of indices are sorted directly.
 
-/// Packs a number that is not negative and an index into a key, which is ordered by the number, and
-/// at equal numbers by index.
+/// Packs a non-negative number and an index into a key, ordered by the number and then by the
+/// index.
 #[inline]
 pub(crate) fn key(number: f32, index: u32) -> u64 {
     // Non-negative floats are ordered like their bits.
@@ -34,7 +34,7 @@ pub(crate) fn key_of(number: f64) -> u64 {
     bits ^ if number.is_sign_negative() { u64::MAX } else { 1 << 63 }
 }
 
-/// Sorts by a key. Items with equal keys stay in their order.
+/// Sorts by a key, stably.
 pub(crate) fn sort_by_key<T: Copy>(items: &mut [T], key: impl Fn(&T) -> u64) {
     let mut order: Vec<u128> =
         (0..).zip(&*items).map(|(place, item)| u128::from(key(item)) << 32 | place).collect();
@@ -45,7 +45,7 @@ pub(crate) fn sort_by_key<T: Copy>(items: &mut [T], key: impl Fn(&T) -> u64) {
     }
 }
 
-/// Sorts pairs by their first number, and those with the same one by their second.
+/// Sorts pairs by their first number, then by their second.
 pub(crate) fn sort_pairs<P: Copy + Into<[u32; 2]>>(pairs: &mut [P]) {
     sort_by_key(pairs, |&pair| {
         let [first, second] = pair.into();
@@ -58,14 +58,13 @@ pub(crate) fn sort_numbers<T: Copy + Into<f64>>(numbers: &mut [T]) {
     sort_by_key(numbers, |&number| key_of(number.into()));
 }
 
-/// The number in the middle of the sorted ones, the upper of two; none if there is no number.
+/// The median, the upper of two; none if there is no number.
 pub(crate) fn median<T: Copy + Into<f64>>(mut numbers: Vec<T>) -> Option<T> {
     sort_numbers(&mut numbers);
     numbers.get(numbers.len() / 2).copied()
 }
 
-/// Sorts a few items: by insertion, which keeps the order of those of which neither comes before
-/// the other.
+/// Sorts a few items by insertion, stably.
 pub fn sort_few<T>(items: &mut [T], before: impl Fn(&T, &T) -> bool) {
     for end in 1..items.len() {
         for at in (1..=end).rev() {

@@ -1,5 +1,4 @@
-//! A hash table of indices into a column of items, which may be points, sides or whatever can be
-//! compared.
+//! A hash table of indices into a column of items of any type.
 
 /// Golden ratio times 2⁶⁴. Multiplication by it spreads keys that differ in a few bits over the top
 /// bits (Fibonacci hashing).
@@ -9,13 +8,13 @@ pub(crate) const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
 pub(crate) fn hash(words: impl IntoIterator<Item = u64>) -> u32 {
     let hash =
         words.into_iter().fold(0, |hash: u64, word| (hash.rotate_left(29) ^ word).wrapping_mul(GOLDEN_RATIO));
-    // The low bits of a round number are 0, and the low bits of a product depend on no higher ones:
-    // mix in the top bits.
+    // The low bits of a round number are 0, and the low bits of a product depend only on lower
+    // bits: mix in the top bits.
     ((hash ^ (hash >> 32)).wrapping_mul(GOLDEN_RATIO) >> 32) as u32
 }
 
-/// Open-addressing hash table, at most half full. The items stay in a column of the caller's: a
-/// table of the standard library would hold each a second time, and files have millions of points.
+/// Open-addressing hash table, at most half full. The items stay in the caller's column: a table of
+/// the standard library would hold a second copy of each, and files have millions of points.
 ///
 /// It is never iterated over, so results do not depend on the order of its buckets.
 #[derive(Debug, Default)]
@@ -27,7 +26,7 @@ pub(crate) struct IndexTable {
 }
 
 impl IndexTable {
-    /// The index of the item with this hash for which `is_it` holds.
+    /// The index of the item with this hash that satisfies `is_it`.
     pub(crate) fn find(&self, hash: u32, is_it: impl Fn(usize) -> bool) -> Option<u32> {
         if self.buckets.is_empty() {
             return None;
@@ -35,9 +34,8 @@ impl IndexTable {
         index_in(self.buckets[self.bucket(hash, is_it)])
     }
 
-    /// The index of the item with this hash for which `is_it` holds. If there is none, the item at
-    /// `fresh` is noted and `fresh` returned; it must then be stored there. None if there is not
-    /// enough memory.
+    /// The index of the item with this hash that satisfies `is_it`. If there is none, `fresh` is
+    /// added and returned; the caller must then store the item there. None if memory runs out.
     pub(crate) fn find_or_add(
         &mut self,
         hash: u32,
@@ -55,7 +53,7 @@ impl IndexTable {
         index_in(self.buckets[bucket])
     }
 
-    /// Bucket of the item, or the empty one where it belongs.
+    /// Bucket of the item, or the empty bucket for it.
     fn bucket(&self, hash: u32, is_it: impl Fn(usize) -> bool) -> usize {
         let mask = self.buckets.len() - 1;
         let is_here = |entry: u64| {
@@ -76,7 +74,7 @@ impl IndexTable {
         fresh.resize(size, 0);
         let old = core::mem::replace(&mut self.buckets, fresh);
         for entry in old.into_iter().filter(|&entry| entry != 0) {
-            // No two entries are of one item.
+            // All entries are of different items.
             let bucket = self.bucket((entry >> 32) as u32, |_| false);
             self.buckets[bucket] = entry;
         }

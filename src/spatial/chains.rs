@@ -1,12 +1,12 @@
-//! Linked lists of points by cell, which are made in one pass and take little memory. The points
-//! stay in their columns; the lists hold their indices.
+//! Linked lists of points by cell, made in one pass with little memory. The points stay in their
+//! columns; the lists hold indices.
 
 use super::cell;
 use crate::math::NONE;
 use glam::Vec3;
 
-/// Points for each list head. With more heads most would stay empty, with fewer many cells would
-/// share one.
+/// Points per list head. With more heads most lists would be empty, with fewer heads many cells
+/// would share a list.
 const POINTS_PER_HEAD: usize = 4;
 
 /// Hash factors of the coordinates: multiplication by them spreads neighbouring cells over all
@@ -40,8 +40,7 @@ impl Chains {
         self.next.resize(points, NONE);
     }
 
-    /// Adds a point to a layer. Its `index` must be below the number of points, and no other point
-    /// may have it.
+    /// Adds a point to a layer. Its `index` must be below the number of points, and unique.
     pub(crate) fn insert(&mut self, layer: usize, point: Vec3, index: u32) {
         let inverse_side = self.inverse_side[layer];
         let [x, y, z] = cell(point * inverse_side);
@@ -50,7 +49,7 @@ impl Chains {
         self.head[head as usize] = index;
     }
 
-    /// Returns those of `points` that were added to the cell of `place` in a layer, are in it now
+    /// Returns those of `points` that were added to the cell of `place` in a layer, are still in it
     /// and pass `meant`.
     pub(crate) fn beside(
         &self,
@@ -67,7 +66,7 @@ impl Chains {
     }
 
     /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`,
-    /// and some points beyond. No point is visited twice.
+    /// and some points beyond, each once.
     pub(crate) fn visit(
         &mut self,
         [lo, hi]: [Vec3; 2],

@@ -1,6 +1,5 @@
 //! Neighbour search: a sparse grid for points that are inserted one by one, linked lists by cell
-//! for points that stay in their columns, and a tree for points that are known from the start and
-//! spread unevenly.
+//! for points in columns, and a tree for points that are given at once and unevenly distributed.
 //!
 //! The cells of the grid are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, which a
 //! hash table with open addressing finds. The table holds the bricks themselves and is part of the
@@ -19,9 +18,8 @@ use glam::{Vec3, Vec4};
 /// Bits of a cell coordinate: three coordinates form one hash key.
 const COORDINATE_BITS: u32 = 21;
 const COORDINATE_MASK: u64 = (1 << COORDINATE_BITS) - 1;
-/// Mean number of points in a block of eight for points on a surface, whose last blocks in each
-/// cell are partly empty. It is less than the 5.5 measured with the cell side that the sampler
-/// uses.
+/// Mean number of points in a block of eight, for points on a surface: the last block of each cell
+/// is partly empty. With the cell side of the sampler the mean is 5.5.
 const POINTS_PER_BLOCK: usize = 5;
 /// Key of an empty table entry. No brick has it, because keys have 63 bits.
 const EMPTY: u64 = u64::MAX;
@@ -29,7 +27,7 @@ const EMPTY: u64 = u64::MAX;
 #[derive(Clone, Copy)]
 struct Brick {
     key: u64,
-    /// A bit for each of the eight cells, which says whether the cell has a block.
+    /// Eight bits, one for each cell that has a block.
     occupied: u32,
     /// First block of each of the eight cells.
     head: [u32; 8],
@@ -69,7 +67,7 @@ struct RadiusQuery {
     radius: f32,
 }
 
-/// Points that a query has found, by their handles.
+/// Points that a query has found, as handles.
 struct Hits {
     len: usize,
     places: [u32; 8 * LANES],
@@ -82,8 +80,8 @@ pub(crate) struct LanesOf {
     pub(crate) count: usize,
 }
 
-/// The lanes of every set, which is given as bits. A query copies all entries and advances by their
-/// number: the end of a loop over the set alone would be mispredicted.
+/// The lanes of every set, given as bits. A query copies all entries and advances by their number:
+/// the end of a loop over the set alone would be mispredicted.
 pub(crate) static LANES_OF: [LanesOf; 1 << LANES] = {
     let mut all = [LanesOf { lane: [0; LANES], count: 0 }; 1 << LANES];
     let mut set = 0;
@@ -111,8 +109,8 @@ pub struct CellGrid {
 }
 
 impl CellGrid {
-    /// Returns an empty grid with cells of the given side. Queries are fast for radii near 0.8 of
-    /// it.
+    /// Returns an empty grid with cells of the given side. Queries are fastest for radii near 0.8
+    /// sides.
     ///
     /// # Panics
     ///
@@ -182,13 +180,13 @@ impl CellGrid {
         CellHandle(head * LANES as u32 + lane as u32)
     }
 
-    /// Removes the point with this handle. Its memory is not used again before the grid is reset.
+    /// Removes the point with this handle. Its memory is reused only after a reset.
     pub fn remove(&mut self, place: CellHandle) {
         let block = &mut self.blocks[place.0 as usize / LANES];
         block.x.0[place.0 as usize % LANES] = f32::INFINITY;
     }
 
-    /// Moves the point with this handle to `point`, under a new index.
+    /// Moves the point with this handle to `point`, and gives it a new index.
     pub fn update(&mut self, place: CellHandle, point: Vec3, index: u32) {
         let (b, lane) = (place.0 as usize / LANES, place.0 as usize % LANES);
         let block = &mut self.blocks[b];
@@ -342,8 +340,8 @@ fn coordinate(x: f32) -> u32 {
     (x + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits()).wrapping_add(CENTRE) & COORDINATE_MASK as u32
 }
 
-/// Cells of a brick whose coordinate on one axis lies in `lo..=hi`: `halves` are those of the lower
-/// and the upper half.
+/// Cells of a brick whose coordinate on one axis is in `lo..=hi`; `halves` are the cells of the
+/// lower and the upper half.
 fn in_range(brick: u32, lo: u32, hi: u32, halves: [u32; 2]) -> u32 {
     let lower = if 2 * brick >= lo { halves[0] } else { 0 };
     let upper = if 2 * brick < hi { halves[1] } else { 0 };

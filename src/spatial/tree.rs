@@ -1,6 +1,6 @@
 //! A balanced tree of bounding boxes over points. The cost of a nearest-neighbour query depends
-//! neither on how the points are distributed nor on distant outliers. What lies around the points
-//! of a leaf is gathered once, in lanes.
+//! neither on the distribution of the points nor on distant outliers. Points around a leaf are
+//! gathered once, in lanes.
 
 use crate::math::{LANES, Lanes, key, signed_key, sort_few, unkey};
 use crate::slices::{self, LIGHT, pause};
@@ -14,7 +14,7 @@ const STACK: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
 struct TreeNode {
-    /// Corners of the box around the points, with a 0 behind each.
+    /// Corners of the bounding box, each padded by a 0.
     lo: Vec4,
     hi: Vec4,
     first: u32,
@@ -46,8 +46,8 @@ impl Leaf {
     /// Radius of the first ball that is searched around each of the points.
     pub(crate) fn reach(&self) -> f32 {
         /// Share of the diagonal of the box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d,
-        /// so the ball reaches 1.4 to 2.2 d, and few points need a second one. A larger ball holds
-        /// more points that are not needed.
+        /// so the ball reaches 1.4 to 2.2 d, and few points need a second one. A larger ball would
+        /// hold more useless points.
         const SHARE: f32 = 0.45;
         SHARE * (self.hi - self.lo).length()
     }
@@ -76,11 +76,10 @@ impl Tree {
     }
 
     /// Makes the tree over points with their indices in slices of work, the largest of which visits
-    /// all points once. The points must be finite. The result depends only on them and their
-    /// indices.
+    /// all points once. The points must be finite. The result depends only on points and indices.
     pub(crate) async fn in_slices(mut items: Vec<(Vec3, u32)>) -> Self {
         let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
-        // Ranges that are still to become nodes, each with the node whose second child it is.
+        // Ranges that still have to become nodes, each with the node whose second child it is.
         let mut open = vec![(0..items.len(), None)];
         let mut splitter = Splitter::default();
         let mut seen = 0;
@@ -221,8 +220,8 @@ impl Tree {
                 continue;
             }
             if meets {
-                // Every point is written, and the next one over it where it is not in the box: no
-                // branch depends on it.
+                // Every point is written, and overwritten by the next if it is not in the box: no
+                // branch depends on the point.
                 let mut count = out.len();
                 out.resize(count + (node.end - node.first) as usize, 0);
                 for (i, p) in (node.first..).zip(&self.position[node.first as usize..node.end as usize]) {
@@ -277,7 +276,7 @@ impl PointsInBox {
     }
 }
 
-/// Returns the node over `items`, which begin at `first`, as a leaf.
+/// Returns a leaf over `items`, whose first index is `first`.
 fn node_of(items: &[(Vec3, u32)], first: usize) -> TreeNode {
     let mut lo = Vec4::INFINITY;
     let mut hi = Vec4::NEG_INFINITY;
@@ -297,8 +296,8 @@ struct Splitter {
 }
 
 impl Splitter {
-    /// Splits the `items` of `node` at the median along its longest side, those at one coordinate
-    /// by their index. Returns where the second part begins.
+    /// Splits the `items` of `node` at the median along its longest side, ties by index. Returns
+    /// the start of the second part.
     fn split(&mut self, items: &mut [(Vec3, u32)], node: &TreeNode) -> usize {
         match (node.hi - node.lo).truncate().max_position() {
             0 => self.split_along(items, |p| p.x),
