@@ -19,13 +19,13 @@ use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 
-/// The member of the settings that holds lengths in the places of shares.
+/// The member of the settings with lengths instead of shares.
 const LENGTHS: &str = "lengths";
 
 /// The member of the settings that holds the formula of the spacing, empty for none.
 const SPACING: &str = "spacing";
 
-/// That a function of JavaScript has failed; who called the core knows why.
+/// Error of a JavaScript function that has thrown; the caller of the core knows the reason.
 const THROWN: &str = "the function has thrown";
 
 /// Where the declarations of the bundle find the types of the values.
@@ -51,17 +51,17 @@ const TYPES: &str = r"import type {
   Start,
 } from '../../engine/core-types.js';";
 
-/// A sampling session. Requests and answers are plain objects; columns are copies, three floats a
-/// vector.
+/// A sampling session. Requests and answers are plain objects; columns are copies, with three
+/// floats per vector.
 #[wasm_bindgen]
 pub struct Core {
     session: Session,
-    /// The file that was opened last, with its name. The field keeps its own copy, which shares
-    /// voxels and faces.
+    /// The last opened file, with its name. The field keeps its own copy, which shares voxels and
+    /// faces.
     opened: Option<(String, Opened)>,
 }
 
-/// What a file or an array has given.
+/// The contents of a file or an array.
 enum Opened {
     Image(Image),
     Mesh(OpenedMesh),
@@ -77,7 +77,7 @@ impl Core {
         Self { session: Session::new(), opened: None }
     }
 
-    /// A session whose first formula is that of no surface of the gallery, whatever its text.
+    /// A session whose first formula is treated as that of no gallery surface, whatever its text.
     pub fn without_surface() -> Self {
         console_error_panic_hook::set_once();
         Self { session: Session::without_surface(), opened: None }
@@ -89,8 +89,8 @@ impl Core {
         to_js(&describe())
     }
 
-    /// Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last
-    /// good field stays.
+    /// Changes the field: takes a `FieldRequest`, returns an `Answer` with `FieldAnswer`. After an
+    /// error the last valid field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_field(
         &mut self,
@@ -100,14 +100,13 @@ impl Core {
         answer(request.and_then(|request| self.session.set_field(&request)))
     }
 
-    /// The number that a text without names stands for in the language of formulas; nothing for any
-    /// other text.
+    /// The value of a text without names in the language of formulas; nothing for any other text.
     pub fn number(&self, text: &str) -> Option<f64> {
         number(text).ok()
     }
 
-    /// What is wrong with the formula of a `thickness`, a `spacing` or a `value` on the present
-    /// surface; nothing if it is right.
+    /// The error in the formula of a `thickness`, a `spacing` or a `value` on the present surface;
+    /// nothing if it is valid.
     pub fn text_fault(
         &self,
         #[wasm_bindgen(unchecked_param_type = "'thickness' | 'spacing' | 'value'")] what: &str,
@@ -121,15 +120,15 @@ impl Core {
         checked.err().map(|fault| fault.message)
     }
 
-    /// Refuses runs that need more than about `megabytes` with their report.
+    /// Refuses runs that need more than about `megabytes`, including their report.
     pub fn limit_memory(&mut self, megabytes: usize) {
         self.session.run.limit_memory(megabytes << 20);
     }
 
-    /// Changes the field to a model from points: the solved system as `Points.field` gives it, what
-    /// `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box, the pulls
-    /// and a formula with the model as an operand count; to an `Answer` with `FieldAnswer`. After
-    /// an error the last good field stays.
+    /// Changes the field to a model from points. `system` is the result of `Points.field`, with the
+    /// `SolvedModel` from `Points.info`; of the `FieldRequest` the box, the pulls and a formula
+    /// with the model as an operand count. Returns an `Answer` with `FieldAnswer`. After an error
+    /// the last valid field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_points(
         &mut self,
@@ -144,16 +143,16 @@ impl Core {
         }))
     }
 
-    /// What a file of an image promises that begins with these bytes, a megabyte of it or all: an
-    /// `Answer` with `ImagePromise`.
+    /// What an image file promises, by its first megabyte or all its bytes: an `Answer` with
+    /// `ImagePromise`.
     #[wasm_bindgen(unchecked_return_type = "Answer<ImagePromise, Fault>")]
     pub fn image_promise(&self, name: &str, start: &[u8]) -> JsValue {
         let outline = Image::outline(name, start).map_err(|error| Fault::new(FaultKind::Image, &error));
         answer(outline.map(|outline| ImagePromise::of(outline.as_ref())))
     }
 
-    /// Opens a file of an image, for [`Core::set_opened`]: an `Answer` with `ImageFacts`. `beside`
-    /// gives the bytes of a file beside it by its name. After an error the last good image stays.
+    /// Opens an image file, for [`Core::set_opened`]: an `Answer` with `ImageFacts`. `beside`
+    /// returns the bytes of another file by name. After an error the last valid image stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<ImageFacts, Fault>")]
     pub fn open_image(
         &mut self,
@@ -170,9 +169,9 @@ impl Core {
         answer(image.map(|image| self.opened(name, image)))
     }
 
-    /// Opens an image of an array: the bytes of voxels of a type such as `int16`, of which the
-    /// index along the first axis changes fastest, and the affine map from indices to points, row
-    /// by row; an `Answer` with `ImageFacts`.
+    /// Opens an image from an array: the bytes of voxels of a type such as `int16`, the index along
+    /// the first axis changing fastest, and the affine map from indices to points, row by row.
+    /// Returns an `Answer` with `ImageFacts`.
     #[wasm_bindgen(unchecked_return_type = "Answer<ImageFacts, Fault>")]
     pub fn open_voxels(
         &mut self,
@@ -192,16 +191,16 @@ impl Core {
         facts
     }
 
-    /// Opens a file of a triangle mesh, for [`Core::set_opened`]. Returns why it cannot be, else
-    /// null. After an error the file before it stays open.
+    /// Opens a triangle mesh file, for [`Core::set_opened`]. Returns the reason if that fails, else
+    /// null. After an error the previous file stays open.
     #[wasm_bindgen(unchecked_return_type = "Fault | null")]
     pub fn open_mesh(&mut self, name: String, bytes: Vec<u8>) -> JsValue {
         let mesh = OpenedMesh::read(&name, bytes);
         self.opened_mesh(name, mesh)
     }
 
-    /// Opens a triangle mesh of arrays: the coordinates of its vertices, three each, and the
-    /// vertices of its faces, three each. Returns why it cannot be, else null.
+    /// Opens a triangle mesh from arrays: three coordinates per vertex, and three vertices per
+    /// face. Returns the reason if that fails, else null.
     #[wasm_bindgen(unchecked_return_type = "Fault | null")]
     pub fn open_faces(&mut self, name: String, points: &[f64], faces: &[u32]) -> JsValue {
         let points = points.as_chunks().0.iter().copied().map(DVec3::from_array).collect();
@@ -215,15 +214,15 @@ impl Core {
         to_js(&mesh.map(|mesh| self.opened = Some((name, Opened::Mesh(mesh)))).err())
     }
 
-    /// Forgets the file that was opened last. The present field keeps its own.
+    /// Forgets the last opened file. The present field keeps its own copy.
     pub fn close_opened(&mut self) {
         self.opened = None;
     }
 
-    /// Changes the field to a surface of the file that was opened last: of a `FieldRequest` the
-    /// parameters that choose it count, of an image `iso`, `label`, `smooth` and `dark` and of a
-    /// mesh `edges` and `smooth`, the box, and a formula with the surface as an operand; to an
-    /// `Answer` with `FieldAnswer`. After an error the last good field stays.
+    /// Changes the field to a surface of the last opened file. Of the `FieldRequest` the file's
+    /// parameters count (`iso`, `label`, `smooth` and `dark` of an image, `edges` and `smooth` of a
+    /// mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
+    /// `FieldAnswer`. After an error the last valid field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_opened(
         &mut self,
@@ -238,10 +237,10 @@ impl Core {
     }
 
     /// Changes the field to a function that takes the coordinates of up to 512 points and an array
-    /// for f at each of them, to an `Answer` with `FieldAnswer`. With `labels` it takes the label
-    /// of a piece besides, and gives its values; `labels` writes the labels at points. Of the
-    /// `FieldRequest` the box counts. Once a function has thrown none is called again, and the run
-    /// ends.
+    /// for f at each of them. Returns an `Answer` with `FieldAnswer`. With `labels`, the function
+    /// also takes the label of a piece, whose values it writes; `labels` writes the labels at
+    /// points. Of the `FieldRequest` the box counts. After a function has thrown none is called
+    /// again, and the run ends.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_function(
         &mut self,
@@ -279,8 +278,8 @@ impl Core {
         )
     }
 
-    /// Chooses the distance between neighbours for the next runs: a formula, or a function as
-    /// [`Core::set_function`] takes it. Returns what is wrong with the formula, else null.
+    /// Chooses the distance between neighbours for the next runs: a formula, or a function like
+    /// that of [`Core::set_function`]. Returns the error in the formula, else null.
     #[wasm_bindgen(unchecked_return_type = "Fault | null")]
     pub fn space(
         &mut self,
@@ -302,9 +301,9 @@ impl Core {
         to_js(&spaced.err())
     }
 
-    /// Adds a column of values at the particles, a formula or a function as [`Core::set_function`]
-    /// takes it, up to `budget` slices of the work. Returns undefined before it is there; then what
-    /// is wrong with the value, else null.
+    /// Adds a column of values at the particles, from a formula or a function like that of
+    /// [`Core::set_function`], doing up to `budget` slices of the work. Returns undefined until it
+    /// is complete; then the error in the value, else null.
     #[wasm_bindgen(unchecked_return_type = "Fault | null | undefined")]
     pub fn add_value(
         &mut self,
@@ -326,20 +325,20 @@ impl Core {
         }
     }
 
-    /// The names of the columns that were added.
+    /// The names of the added columns.
     pub fn value_names(&self) -> Vec<String> {
         self.session.run.measured().values.iter().map(|own| own.name.clone()).collect()
     }
 
-    /// The column of this name that was added; empty if there is none.
+    /// The added column of this name; empty if there is none.
     pub fn added_value(&self, name: &str) -> Vec<f32> {
         let all = &self.session.run.measured().values;
         all.iter().find(|own| own.name == name).map_or_else(Vec::new, |own| own.values.clone())
     }
 
-    /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget`
-    /// slices of the work: an `Answer` with `FieldAnswer` once it is known, nothing before. While a
-    /// slider moves the box `only_grows`.
+    /// Finds the box of the next run with these `Settings` and the creases in it, doing up to
+    /// `budget` slices of the work: an `Answer` with `FieldAnswer` once complete, nothing before.
+    /// While a slider moves, the box `only_grows`.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault> | undefined")]
     pub fn fit(
         &mut self,
@@ -354,8 +353,8 @@ impl Core {
         Some(answer(field))
     }
 
-    /// Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with
-    /// `Start`.
+    /// Starts a run with `Settings`, in which missing ones have their defaults. Returns an `Answer`
+    /// with `Start`.
     #[wasm_bindgen(unchecked_return_type = "Answer<Start, Fault>")]
     pub fn start(
         &mut self,
@@ -367,9 +366,9 @@ impl Core {
         }))
     }
 
-    /// Has the particles of the last run follow its surface to the present field, in the box that
-    /// [`Core::fit`] has found: whether they can, and the run had these `Settings`. `is_closed`: no
-    /// particle is born, and none dies but where it does not come to the surface.
+    /// Moves the particles of the last run along with its surface to the present field, in the box
+    /// from [`Core::fit`]. Returns whether that is possible and the run had these `Settings`.
+    /// `is_closed`: no particle is born, and one dies only if it does not reach the surface.
     pub fn follow(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
@@ -398,7 +397,7 @@ impl Core {
         to_js(&self.session.run.cancel())
     }
 
-    /// Rows of the columns: particles, those on creases and seams once on each side.
+    /// Rows of the columns: one per particle, and one per side for particles on creases and seams.
     pub fn count(&self) -> usize {
         self.session.run.rows()
     }
@@ -412,8 +411,8 @@ impl Core {
         self.exact_positions(from).into_iter().map(|coordinate| coordinate as f32).collect()
     }
 
-    /// Positions from particle `from` on, where single precision does not hold them: in a box far
-    /// from the origin. Elsewhere nothing.
+    /// Positions from particle `from` on, if single precision is not enough: in a box far from the
+    /// origin. Otherwise empty.
     pub fn exact_positions(&self, from: usize) -> Vec<f64> {
         let particles = self.session.run.particles();
         if particles.origin == DVec3::ZERO {
@@ -422,19 +421,18 @@ impl Core {
         (from..self.session.run.rows()).flat_map(|i| particles.place(i).to_array()).collect()
     }
 
-    /// For the rows of particles on creases, seams and tips, which come first, the first row of the
-    /// same particle; nothing without any.
+    /// For rows of particles on creases, seams and tips, which come first, the first row of the
+    /// same particle; empty without any.
     pub fn twins(&self) -> Vec<u32> {
         self.column(&self.session.run.particles().twins, 0)
     }
 
-    /// The pairs of rows between which a crease goes on, two each; none without creases.
+    /// The pairs of rows that a crease connects, two numbers each; empty without creases.
     pub fn segments(&self) -> Vec<u32> {
         self.pairs_along(true)
     }
 
-    /// The pairs of rows between which a seam without an edge goes on, two each; none without
-    /// seams.
+    /// The pairs of rows that a smooth seam connects, two numbers each; empty without seams.
     pub fn seams(&self) -> Vec<u32> {
         self.pairs_along(false)
     }
@@ -460,13 +458,13 @@ impl Core {
     }
 
     /// The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an
-    /// adaptive particle. Bit 30 marks a singular point nearby.
+    /// adaptive particle. Bit 30 marks a nearby singular point.
     pub fn slots(&self, from: usize) -> Vec<u32> {
         self.column(&self.session.run.particles().slots, from).into_iter().map(|slots| slots.0).collect()
     }
 
-    /// Says what follows on the run, for the share of the work that is told: which particles will
-    /// be measured, and whether they will be joined.
+    /// Announces what follows the run, for the estimate of the work: which particles will be
+    /// measured, and whether they will be joined.
     pub fn plan(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Measured")] measured: JsValue,
@@ -475,12 +473,12 @@ impl Core {
         self.session.run.plan(read(measured, FaultKind::Request).unwrap_or_default(), is_joined);
     }
 
-    /// Estimated share of the work that is done: of the run and of what is planned.
+    /// Estimated share of the work that is done, of the run and of what is planned.
     pub fn fraction(&self) -> f64 {
         self.session.run.fraction()
     }
 
-    /// Measures these particles, up to `budget` slices of the work: `Report` once it is complete,
+    /// Measures these particles, doing up to `budget` slices of the work: `Report` once complete,
     /// nothing before.
     #[wasm_bindgen(unchecked_return_type = "Report | undefined")]
     pub fn measure(
@@ -492,8 +490,8 @@ impl Core {
         self.session.measure(measured, budget).map(|report| to_js(&report))
     }
 
-    /// Measures particles that something else has placed on the present surface, vectors of three
-    /// floats: `Measures`. The columns of the last report are then theirs.
+    /// Measures particles placed on the present surface by other means, three floats per vector:
+    /// `Measures`. The columns of the last report then belong to them.
     #[wasm_bindgen(unchecked_return_type = "Measures")]
     pub fn measure_placed(
         &mut self,
@@ -513,17 +511,17 @@ impl Core {
         to_js(&self.session.run.measure_placed(&placed, sampling))
     }
 
-    /// Natural neighbours per particle, as of the last report.
+    /// Number of natural neighbours per particle, from the last report.
     pub fn valence(&self) -> Vec<u8> {
         self.session.run.measured().valence.clone()
     }
 
-    /// Distance to the nearest particle, as of the last report.
+    /// Distance to the nearest particle, from the last report.
     pub fn nearest(&self) -> Vec<f32> {
         self.session.run.measured().nearest.clone()
     }
 
-    /// Patch of each particle, by the number of its branch; empty without creases.
+    /// Patch of each particle, as the number of its branch; empty without creases.
     pub fn patch(&self) -> Vec<u32> {
         self.column(&self.session.run.particles().patch, 0)
     }
@@ -541,13 +539,13 @@ impl Core {
         (0..rows).map(|row| particles.first_row(row) as u32).collect()
     }
 
-    /// |f|/|∇f| per particle, as of the last report.
+    /// |f|/|∇f| per particle, from the last report.
     pub fn residual(&self) -> Vec<f32> {
         self.session.run.measured().residual.clone()
     }
 
     /// Energy of each particle among its natural neighbours, over that of six at the ideal
-    /// distance, as of the last report.
+    /// distance, from the last report.
     pub fn energy(&self) -> Vec<f32> {
         self.session.run.measured().energy.clone()
     }
@@ -557,35 +555,35 @@ impl Core {
         self.session.run.measured().component.clone()
     }
 
-    /// Principal curvatures of particles from `from` on, two each, worked out now.
+    /// Principal curvatures of particles from `from` on, two each, computed by this call.
     pub fn curvature(&mut self, from: usize) -> Vec<f32> {
         self.session.run.curvatures(from).into_flattened()
     }
 
-    /// Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is
+    /// Joins the particles to a mesh, doing up to `budget` slices of the work: `MeshAnswer` once
     /// complete, nothing before.
     #[wasm_bindgen(unchecked_return_type = "MeshAnswer | undefined")]
     pub fn join(&mut self, budget: u32) -> Option<JsValue> {
         self.session.join(budget).map(|answer| to_js(&answer))
     }
 
-    /// How far the joined mesh is from the one that was opened, up to `budget` slices of the work:
-    /// `MeshChange` once it is known, undefined before; null where the surface is not that of a
-    /// mesh by itself.
+    /// The distance of the joined mesh from the opened one, doing up to `budget` slices of the
+    /// work: `MeshChange` once complete, undefined before; null unless the surface is that of a
+    /// mesh without a formula.
     #[wasm_bindgen(unchecked_return_type = "MeshChange | null | undefined")]
     pub fn compare(&mut self, budget: u32) -> JsValue {
         self.session.compare(budget).map_or(JsValue::UNDEFINED, |change| to_js(&change))
     }
 
-    /// The triangles of the mesh, three rows each, counter-clockwise round their normals; none
+    /// The triangles of the mesh, three rows each, counter-clockwise around their normals; none
     /// before it is complete.
     pub fn triangles(&self) -> Vec<u32> {
         self.session.run.mesh().map_or_else(Vec::new, |mesh| mesh.corners().as_flattened().to_vec())
     }
 
-    /// The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget`
-    /// slices of the work; its bytes once it is complete, undefined before; null for another
-    /// extension or if it is too large.
+    /// The mesh as a file with its record, from a `FileRequest`, doing up to `budget` slices of the
+    /// work: its bytes once complete, undefined before; null for an unknown extension or if it is
+    /// too large.
     #[expect(clippy::missing_panics_doc, reason = "a record is an object without cycles")]
     #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer> | null | undefined")]
     pub fn mesh_file(
@@ -604,15 +602,14 @@ impl Core {
         }
     }
 
-    /// The record of what the particles were made from, for their files: `FileRecord`; null before
-    /// the first run.
+    /// The record for the files of the particles: `FileRecord`; null before the first run.
     #[wasm_bindgen(unchecked_return_type = "FileRecord | null")]
     pub fn record(&self) -> JsValue {
         to_js(&self.session.record(None))
     }
 
-    /// The program that makes the particles of the last run, in the language of this word (`rust`,
-    /// `js`, `python` or `shell`): an `Answer` with `Code`.
+    /// A program that makes the particles of the last run, in a language (`rust`, `js`, `python` or
+    /// `shell`): an `Answer` with `Code`.
     #[wasm_bindgen(unchecked_return_type = "Answer<Code, string>")]
     pub fn code(&self, language: &str) -> JsValue {
         let language = Language::named(language).ok_or_else(|| format!("there is no language `{language}`"));
@@ -624,8 +621,8 @@ impl Core {
         format!("{:016x}", self.session.run.particles().digest())
     }
 
-    /// The settings of a run, and with them those of the box and the solid, which the session
-    /// takes. `lengths` among them are [`Lengths`].
+    /// Reads the settings of a run, and applies those of the box and the solid, which belong to the
+    /// session. `lengths` among them are [`Lengths`].
     fn read_settings(&mut self, settings: JsValue) -> Result<Asked, Fault> {
         let solid: SolidSettings = read(settings.clone(), FaultKind::Settings)?;
         self.session.choose(solid)?;
@@ -639,7 +636,7 @@ impl Core {
             self.session.space(Some(spacing).filter(|spacing| !spacing.formula.is_empty()))?;
         }
         for name in SolidSettings::NAMES.into_iter().chain([LENGTHS, SPACING]) {
-            // Nothing is deleted where it is not there; a copy can be changed.
+            // Deleting a missing property does nothing; a copy can be changed.
             let _ = js_sys::Reflect::delete_property(&of_run, &name.into());
         }
         Ok(Asked { settings: read(of_run.into(), FaultKind::Settings)?, lengths })
@@ -662,7 +659,7 @@ impl Core {
     }
 }
 
-/// A function of place that writes f at points.
+/// A field from a function that writes f at points.
 fn function_of(function: Function) -> impl Field + 'static {
     BatchField::<_, &str>::new(move |points: &[DVec3], f: &mut [f64]| {
         let out = Float64Array::new_with_length(f.len() as u32);
@@ -677,7 +674,7 @@ fn coordinates(points: &[DVec3]) -> Float64Array {
     Float64Array::from(bytemuck::cast_slice::<_, f64>(points))
 }
 
-/// The image of an array, see [`Core::open_voxels`].
+/// The image from an array, see [`Core::open_voxels`].
 fn image_of(voxel_type: &str, size: &[u32], rows: &[f64], bytes: Vec<u8>) -> Result<Image, Fault> {
     let wrong = || Fault::new(FaultKind::Request, &"an image has three sizes and twelve numbers of a map");
     let voxel_type = VoxelType::named(voxel_type).ok_or_else(wrong)?;

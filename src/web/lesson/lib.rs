@@ -37,8 +37,8 @@ pub struct Lesson {
     run: Option<lesson::Lesson>,
 }
 
-/// A field that is asked for jets alone. Evaluation in lanes and bounds over boxes stay out of the
-/// bundle.
+/// A field that only evaluates jets. Evaluation in lanes and bounds over boxes are not compiled
+/// into the bundle.
 struct Pointwise<F>(F);
 
 impl<F: Field> Field for Pointwise<F> {
@@ -73,8 +73,8 @@ impl Lesson {
         Self::default()
     }
 
-    /// Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`,
-    /// of which what is missing has its default; to an `Answer` with `LessonProgress`.
+    /// Begins a run on a formula, and drops the previous one: takes `LessonField` and
+    /// `LessonSettings`, possibly partial; returns an `Answer` with `LessonProgress`.
     #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault>")]
     pub fn start(
         &mut self,
@@ -85,8 +85,8 @@ impl Lesson {
         self.begin(field.and_then(|field| Ok((formula(&field)?, field.bounds))), settings)
     }
 
-    /// Begins a run on a model from points: `system` is the solved system that `Points.field`
-    /// returns, `pulls` are those on its surface, and `bounds` is its `Bounds`; to an `Answer` with
+    /// Begins a run on a model from points: `system` is the result of `Points.field`, `pulls` are
+    /// those on its surface, and `bounds` is its `Bounds`. Returns an `Answer` with
     /// `LessonProgress`.
     #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault>")]
     pub fn start_points(
@@ -101,7 +101,7 @@ impl Lesson {
         self.begin(pulled.and_then(|field| Ok((field, bounds?))), settings)
     }
 
-    /// Goes on by up to `budget` units of work: `LessonProgress`; null before a run.
+    /// Does up to `budget` units of work: `LessonProgress`; null before a run.
     #[wasm_bindgen(unchecked_return_type = "LessonProgress | null")]
     pub fn step(&mut self, budget: u32) -> JsValue {
         to_js(&self.run.as_mut().map(|run| run.step(budget)))
@@ -120,8 +120,8 @@ impl Lesson {
         to_js(&self.run.as_mut().map(|run| run.events(first, count)).unwrap_or_default())
     }
 
-    /// Goes to the moment before event number `event`; returns the number of events that have
-    /// happened then.
+    /// Goes to the moment before event number `event`; returns the number of events before that
+    /// moment.
     pub fn seek(&mut self, event: u32) -> u32 {
         self.run.as_mut().map_or(0, |run| run.seek(event))
     }
@@ -133,7 +133,7 @@ impl Lesson {
         to_js(&self.run.as_ref().and_then(|run| run.life(particle)))
     }
 
-    /// Positions at the moment that was sought, three floats each.
+    /// Positions at the sought moment, three floats each.
     pub fn positions(&self) -> Vec<f32> {
         self.column(|particle| particle.p().as_vec3().to_array()).into_flattened()
     }
@@ -163,7 +163,7 @@ impl Lesson {
         self.column(|particle| particle.front)
     }
 
-    /// Three-bit fates of the slots, as those of the sampler.
+    /// Three-bit fates of the slots, as in the sampler.
     pub fn slots(&self) -> Vec<u32> {
         self.column(|particle| particle.slots.0)
     }
@@ -192,7 +192,7 @@ impl Lesson {
         to_js(&run.map(|(run, start)| run.newton(start, reach)).unwrap_or_default())
     }
 
-    /// Digest of the particles at the moment that was sought, 16 hexadecimal digits.
+    /// Digest of the particles at the sought moment, 16 hexadecimal digits.
     pub fn digest(&self) -> String {
         format!(
             "{:016x}",

@@ -31,15 +31,15 @@ impl Points {
         Self::default()
     }
 
-    /// Begins a built-in model, and gives up what was begun before: an `Answer` with
-    /// `PointsProgress`. 0 centres are the default number of them.
+    /// Begins a built-in model, and drops the previous job: an `Answer` with `PointsProgress`. 0
+    /// centres mean their default number.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, string>")]
     pub fn model(&mut self, id: &str, centres: u32) -> JsValue {
         self.begin(|| Job::model(id, wanted(centres)))
     }
 
-    /// Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name`
-    /// is for reports. 0 centres are the default number of them.
+    /// Begins a file, and drops the previous job: an `Answer` with `PointsProgress`. `name` is for
+    /// reports. 0 centres mean their default number.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, string>")]
     pub fn file(&mut self, name: &str, bytes: Vec<u8>, centres: u32) -> JsValue {
         self.begin(|| Job::file(name, bytes, wanted(centres)))
@@ -52,7 +52,7 @@ impl Points {
         answer(job.and_then(|job| job.step(budget).map_err(|error| error.to_string())))
     }
 
-    /// The field as `Core.set_points` takes it; nothing before it is there.
+    /// The field for `Core.set_points`; empty until it is solved.
     pub fn field(&self) -> Vec<u8> {
         self.job.as_ref().and_then(Job::fit).map(|fit| fit.data.to_bytes()).unwrap_or_default()
     }
@@ -71,14 +71,14 @@ impl Points {
     }
 
     fn begin(&mut self, job: impl FnOnce() -> Result<Job, JobError>) -> JsValue {
-        // Room for the old one's points goes before that for the new one's is taken.
+        // The old job's memory is freed before the new one's is allocated.
         self.job = None;
         let begun = job().map(|job| self.job.insert(job).progress());
         answer(begun.map_err(|error| error.to_string()))
     }
 }
 
-/// The number of centres that is asked for: 0 is the default number.
+/// The wanted number of centres: 0 means the default number.
 fn wanted(centres: u32) -> u32 {
     if centres == 0 { DEFAULT_CENTRES } else { centres }
 }

@@ -1,7 +1,7 @@
 //! Values that cross between Rust and JavaScript, as plain objects.
 //!
-//! Through JSON text the core would be larger by 61 kB (gzip) and not by 29: half of that would be
-//! code and tables for decimal digits.
+//! With JSON text the core would grow by 61 kB (gzip) instead of 29: half of that would be code and
+//! tables for decimal digits.
 #![cfg(target_arch = "wasm32")]
 
 use js_sys::Reflect;
@@ -10,21 +10,21 @@ use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::JsValue;
 
-/// The value that a plain object describes.
+/// Converts a plain object to a value.
 ///
 /// # Errors
 ///
-/// The fault of this kind, if it describes none.
+/// A fault of this kind, if the object describes no such value.
 pub fn read<T: serde::de::DeserializeOwned>(value: JsValue, kind: FaultKind) -> Result<T, Fault> {
     serde_wasm_bindgen::from_value(value).map_err(|error| Fault::new(kind, &error))
 }
 
-/// The value as JSON would have it: structures and maps are objects, what is absent is null. A
-/// number that is not finite stays what it is.
+/// Converts a value as JSON would: structures and maps become objects, absent values null. Numbers
+/// that are not finite are kept.
 ///
 /// # Panics
 ///
-/// If a map has keys that are no text: none that crosses has.
+/// If a map has keys that are not strings, which no value here has.
 pub fn to_js(value: &impl Serialize) -> JsValue {
     value.serialize(&Serializer::json_compatible()).expect("every value of the core has a form in JavaScript")
 }

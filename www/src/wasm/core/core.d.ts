@@ -23,19 +23,19 @@ import type {
 
 
 /**
- * A sampling session. Requests and answers are plain objects; columns are copies, three floats a
- * vector.
+ * A sampling session. Requests and answers are plain objects; columns are copies, with three
+ * floats per vector.
  */
 export class Core {
     [Symbol.dispose](): void;
     /**
-     * Adds a column of values at the particles, a formula or a function as [`Core::set_function`]
-     * takes it, up to `budget` slices of the work. Returns undefined before it is there; then what
-     * is wrong with the value, else null.
+     * Adds a column of values at the particles, from a formula or a function like that of
+     * [`Core::set_function`], doing up to `budget` slices of the work. Returns undefined until it
+     * is complete; then the error in the value, else null.
      */
     add_value(name: string, value: string | ((points: Float64Array, out: Float64Array) => void), budget: number): Fault | null | undefined;
     /**
-     * The column of this name that was added; empty if there is none.
+     * The added column of this name; empty if there is none.
      */
     added_value(name: string): Float32Array<ArrayBuffer>;
     /**
@@ -43,18 +43,18 @@ export class Core {
      */
     cancel(): Progress;
     /**
-     * Forgets the file that was opened last. The present field keeps its own.
+     * Forgets the last opened file. The present field keeps its own copy.
      */
     close_opened(): void;
     /**
-     * The program that makes the particles of the last run, in the language of this word (`rust`,
-     * `js`, `python` or `shell`): an `Answer` with `Code`.
+     * A program that makes the particles of the last run, in a language (`rust`, `js`, `python` or
+     * `shell`): an `Answer` with `Code`.
      */
     code(language: string): Answer<Code, string>;
     /**
-     * How far the joined mesh is from the one that was opened, up to `budget` slices of the work:
-     * `MeshChange` once it is known, undefined before; null where the surface is not that of a
-     * mesh by itself.
+     * The distance of the joined mesh from the opened one, doing up to `budget` slices of the
+     * work: `MeshChange` once complete, undefined before; null unless the surface is that of a
+     * mesh without a formula.
      */
     compare(budget: number): MeshChange | null | undefined;
     /**
@@ -66,11 +66,11 @@ export class Core {
      */
     constructor();
     /**
-     * Rows of the columns: particles, those on creases and seams once on each side.
+     * Rows of the columns: one per particle, and one per side for particles on creases and seams.
      */
     count(): number;
     /**
-     * Principal curvatures of particles from `from` on, two each, worked out now.
+     * Principal curvatures of particles from `from` on, two each, computed by this call.
      */
     curvature(from: number): Float32Array<ArrayBuffer>;
     /**
@@ -83,38 +83,38 @@ export class Core {
     digest(): string;
     /**
      * Energy of each particle among its natural neighbours, over that of six at the ideal
-     * distance, as of the last report.
+     * distance, from the last report.
      */
     energy(): Float32Array<ArrayBuffer>;
     /**
-     * Positions from particle `from` on, where single precision does not hold them: in a box far
-     * from the origin. Elsewhere nothing.
+     * Positions from particle `from` on, if single precision is not enough: in a box far from the
+     * origin. Otherwise empty.
      */
     exact_positions(from: number): Float64Array<ArrayBuffer>;
     /**
-     * Finds the box of the next run with these `Settings` and the creases in it, up to `budget`
-     * slices of the work: an `Answer` with `FieldAnswer` once it is known, nothing before. While a
-     * slider moves the box `only_grows`.
+     * Finds the box of the next run with these `Settings` and the creases in it, doing up to
+     * `budget` slices of the work: an `Answer` with `FieldAnswer` once complete, nothing before.
+     * While a slider moves, the box `only_grows`.
      */
     fit(settings: Record<string, number | string>, only_grows: boolean, budget: number): Answer<FieldAnswer, Fault> | undefined;
     /**
-     * Has the particles of the last run follow its surface to the present field, in the box that
-     * [`Core::fit`] has found: whether they can, and the run had these `Settings`. `is_closed`: no
-     * particle is born, and none dies but where it does not come to the surface.
+     * Moves the particles of the last run along with its surface to the present field, in the box
+     * from [`Core::fit`]. Returns whether that is possible and the run had these `Settings`.
+     * `is_closed`: no particle is born, and one dies only if it does not reach the surface.
      */
     follow(settings: Record<string, number | string>, is_closed: boolean): boolean;
     /**
-     * Estimated share of the work that is done: of the run and of what is planned.
+     * Estimated share of the work that is done, of the run and of what is planned.
      */
     fraction(): number;
     free(): void;
     /**
-     * What a file of an image promises that begins with these bytes, a megabyte of it or all: an
-     * `Answer` with `ImagePromise`.
+     * What an image file promises, by its first megabyte or all its bytes: an `Answer` with
+     * `ImagePromise`.
      */
     image_promise(name: string, start: Uint8Array | number[]): Answer<ImagePromise, Fault>;
     /**
-     * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is
+     * Joins the particles to a mesh, doing up to `budget` slices of the work: `MeshAnswer` once
      * complete, nothing before.
      */
     join(budget: number): MeshAnswer | undefined;
@@ -123,27 +123,27 @@ export class Core {
      */
     levels(from: number): Uint32Array<ArrayBuffer>;
     /**
-     * Refuses runs that need more than about `megabytes` with their report.
+     * Refuses runs that need more than about `megabytes`, including their report.
      */
     limit_memory(megabytes: number): void;
     /**
-     * Measures these particles, up to `budget` slices of the work: `Report` once it is complete,
+     * Measures these particles, doing up to `budget` slices of the work: `Report` once complete,
      * nothing before.
      */
     measure(measured: Measured, budget: number): Report | undefined;
     /**
-     * Measures particles that something else has placed on the present surface, vectors of three
-     * floats: `Measures`. The columns of the last report are then theirs.
+     * Measures particles placed on the present surface by other means, three floats per vector:
+     * `Measures`. The columns of the last report then belong to them.
      */
     measure_placed(positions: Float32Array | number[], normals: Float32Array | number[], radii: Float32Array | number[], is_adaptive: boolean): Measures;
     /**
-     * The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget`
-     * slices of the work; its bytes once it is complete, undefined before; null for another
-     * extension or if it is too large.
+     * The mesh as a file with its record, from a `FileRequest`, doing up to `budget` slices of the
+     * work: its bytes once complete, undefined before; null for an unknown extension or if it is
+     * too large.
      */
     mesh_file(request: Partial<FileRequest>, budget: number): Uint8Array<ArrayBuffer> | null | undefined;
     /**
-     * Distance to the nearest particle, as of the last report.
+     * Distance to the nearest particle, from the last report.
      */
     nearest(): Float32Array<ArrayBuffer>;
     /**
@@ -151,29 +151,28 @@ export class Core {
      */
     normals(from: number): Float32Array<ArrayBuffer>;
     /**
-     * The number that a text without names stands for in the language of formulas; nothing for any
-     * other text.
+     * The value of a text without names in the language of formulas; nothing for any other text.
      */
     number(text: string): number | undefined;
     /**
-     * Opens a triangle mesh of arrays: the coordinates of its vertices, three each, and the
-     * vertices of its faces, three each. Returns why it cannot be, else null.
+     * Opens a triangle mesh from arrays: three coordinates per vertex, and three vertices per
+     * face. Returns the reason if that fails, else null.
      */
     open_faces(name: string, points: Float64Array | number[], faces: Uint32Array | number[]): Fault | null;
     /**
-     * Opens a file of an image, for [`Core::set_opened`]: an `Answer` with `ImageFacts`. `beside`
-     * gives the bytes of a file beside it by its name. After an error the last good image stays.
+     * Opens an image file, for [`Core::set_opened`]: an `Answer` with `ImageFacts`. `beside`
+     * returns the bytes of another file by name. After an error the last valid image stays.
      */
     open_image(name: string, bytes: Uint8Array | number[], beside: (name: string) => Uint8Array | undefined): Answer<ImageFacts, Fault>;
     /**
-     * Opens a file of a triangle mesh, for [`Core::set_opened`]. Returns why it cannot be, else
-     * null. After an error the file before it stays open.
+     * Opens a triangle mesh file, for [`Core::set_opened`]. Returns the reason if that fails, else
+     * null. After an error the previous file stays open.
      */
     open_mesh(name: string, bytes: Uint8Array | number[]): Fault | null;
     /**
-     * Opens an image of an array: the bytes of voxels of a type such as `int16`, of which the
-     * index along the first axis changes fastest, and the affine map from indices to points, row
-     * by row; an `Answer` with `ImageFacts`.
+     * Opens an image from an array: the bytes of voxels of a type such as `int16`, the index along
+     * the first axis changing fastest, and the affine map from indices to points, row by row.
+     * Returns an `Answer` with `ImageFacts`.
      */
     open_voxels(name: string, voxel_type: string, size: Uint32Array | number[], rows: Float64Array | number[], bytes: Uint8Array | number[]): Answer<ImageFacts, Fault>;
     /**
@@ -186,7 +185,7 @@ export class Core {
      */
     particle(): Uint32Array<ArrayBuffer>;
     /**
-     * Patch of each particle, by the number of its branch; empty without creases.
+     * Patch of each particle, as the number of its branch; empty without creases.
      */
     patch(): Uint32Array<ArrayBuffer>;
     /**
@@ -194,8 +193,8 @@ export class Core {
      */
     periodic(): Uint32Array<ArrayBuffer>;
     /**
-     * Says what follows on the run, for the share of the work that is told: which particles will
-     * be measured, and whether they will be joined.
+     * Announces what follows the run, for the estimate of the work: which particles will be
+     * measured, and whether they will be joined.
      */
     plan(measured: Measured, is_joined: boolean): void;
     /**
@@ -207,8 +206,7 @@ export class Core {
      */
     radii(from: number): Float32Array<ArrayBuffer>;
     /**
-     * The record of what the particles were made from, for their files: `FileRecord`; null before
-     * the first run.
+     * The record for the files of the particles: `FileRecord`; null before the first run.
      */
     record(): FileRecord | null;
     /**
@@ -216,58 +214,57 @@ export class Core {
      */
     relax(steps: number): void;
     /**
-     * |f|/|∇f| per particle, as of the last report.
+     * |f|/|∇f| per particle, from the last report.
      */
     residual(): Float32Array<ArrayBuffer>;
     /**
-     * The pairs of rows between which a seam without an edge goes on, two each; none without
-     * seams.
+     * The pairs of rows that a smooth seam connects, two numbers each; empty without seams.
      */
     seams(): Uint32Array<ArrayBuffer>;
     /**
-     * The pairs of rows between which a crease goes on, two each; none without creases.
+     * The pairs of rows that a crease connects, two numbers each; empty without creases.
      */
     segments(): Uint32Array<ArrayBuffer>;
     /**
-     * Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last
-     * good field stays.
+     * Changes the field: takes a `FieldRequest`, returns an `Answer` with `FieldAnswer`. After an
+     * error the last valid field stays.
      */
     set_field(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a function that takes the coordinates of up to 512 points and an array
-     * for f at each of them, to an `Answer` with `FieldAnswer`. With `labels` it takes the label
-     * of a piece besides, and gives its values; `labels` writes the labels at points. Of the
-     * `FieldRequest` the box counts. Once a function has thrown none is called again, and the run
-     * ends.
+     * for f at each of them. Returns an `Answer` with `FieldAnswer`. With `labels`, the function
+     * also takes the label of a piece, whose values it writes; `labels` writes the labels at
+     * points. Of the `FieldRequest` the box counts. After a function has thrown none is called
+     * again, and the run ends.
      */
     set_function(_function: (points: Float64Array, out: Float64Array, piece?: number) => void, request: Partial<FieldRequest>, labels?: (points: Float64Array, out: Uint32Array) => void): Answer<FieldAnswer, Fault>;
     /**
-     * Changes the field to a surface of the file that was opened last: of a `FieldRequest` the
-     * parameters that choose it count, of an image `iso`, `label`, `smooth` and `dark` and of a
-     * mesh `edges` and `smooth`, the box, and a formula with the surface as an operand; to an
-     * `Answer` with `FieldAnswer`. After an error the last good field stays.
+     * Changes the field to a surface of the last opened file. Of the `FieldRequest` the file's
+     * parameters count (`iso`, `label`, `smooth` and `dark` of an image, `edges` and `smooth` of a
+     * mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
+     * `FieldAnswer`. After an error the last valid field stays.
      */
     set_opened(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
-     * Changes the field to a model from points: the solved system as `Points.field` gives it, what
-     * `Points.info` says of it, `SolvedModel`, and a `FieldRequest`, of which the box, the pulls
-     * and a formula with the model as an operand count; to an `Answer` with `FieldAnswer`. After
-     * an error the last good field stays.
+     * Changes the field to a model from points. `system` is the result of `Points.field`, with the
+     * `SolvedModel` from `Points.info`; of the `FieldRequest` the box, the pulls and a formula
+     * with the model as an operand count. Returns an `Answer` with `FieldAnswer`. After an error
+     * the last valid field stays.
      */
     set_points(system: Uint8Array | number[], about: SolvedModel, request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an
-     * adaptive particle. Bit 30 marks a singular point nearby.
+     * adaptive particle. Bit 30 marks a nearby singular point.
      */
     slots(from: number): Uint32Array<ArrayBuffer>;
     /**
-     * Chooses the distance between neighbours for the next runs: a formula, or a function as
-     * [`Core::set_function`] takes it. Returns what is wrong with the formula, else null.
+     * Chooses the distance between neighbours for the next runs: a formula, or a function like
+     * that of [`Core::set_function`]. Returns the error in the formula, else null.
      */
     space(spacing: string | ((points: Float64Array, out: Float64Array) => void)): Fault | null;
     /**
-     * Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with
-     * `Start`.
+     * Starts a run with `Settings`, in which missing ones have their defaults. Returns an `Answer`
+     * with `Start`.
      */
     start(settings: Record<string, number | string>): Answer<Start, Fault>;
     /**
@@ -275,30 +272,30 @@ export class Core {
      */
     step(budget: number): Progress;
     /**
-     * What is wrong with the formula of a `thickness`, a `spacing` or a `value` on the present
-     * surface; nothing if it is right.
+     * The error in the formula of a `thickness`, a `spacing` or a `value` on the present surface;
+     * nothing if it is valid.
      */
     text_fault(what: 'thickness' | 'spacing' | 'value', text: string): string | undefined;
     /**
-     * The triangles of the mesh, three rows each, counter-clockwise round their normals; none
+     * The triangles of the mesh, three rows each, counter-clockwise around their normals; none
      * before it is complete.
      */
     triangles(): Uint32Array<ArrayBuffer>;
     /**
-     * For the rows of particles on creases, seams and tips, which come first, the first row of the
-     * same particle; nothing without any.
+     * For rows of particles on creases, seams and tips, which come first, the first row of the
+     * same particle; empty without any.
      */
     twins(): Uint32Array<ArrayBuffer>;
     /**
-     * Natural neighbours per particle, as of the last report.
+     * Number of natural neighbours per particle, from the last report.
      */
     valence(): Uint8Array<ArrayBuffer>;
     /**
-     * The names of the columns that were added.
+     * The names of the added columns.
      */
     value_names(): string[];
     /**
-     * A session whose first formula is that of no surface of the gallery, whatever its text.
+     * A session whose first formula is treated as that of no gallery surface, whatever its text.
      */
     static without_surface(): Core;
 }

@@ -30,7 +30,7 @@ export class Lesson {
      */
     constructor();
     /**
-     * Digest of the particles at the moment that was sought, 16 hexadecimal digits.
+     * Digest of the particles at the sought moment, 16 hexadecimal digits.
      */
     digest(): string;
     /**
@@ -68,7 +68,7 @@ export class Lesson {
      */
     parents(): Uint32Array<ArrayBuffer>;
     /**
-     * Positions at the moment that was sought, three floats each.
+     * Positions at the sought moment, three floats each.
      */
     positions(): Float32Array<ArrayBuffer>;
     /**
@@ -81,27 +81,27 @@ export class Lesson {
      */
     section(centre: Float64Array | number[], right: Float64Array | number[], up: Float64Array | number[], half: number, cells: number): Float32Array<ArrayBuffer>;
     /**
-     * Goes to the moment before event number `event`; returns the number of events that have
-     * happened then.
+     * Goes to the moment before event number `event`; returns the number of events before that
+     * moment.
      */
     seek(event: number): number;
     /**
-     * Three-bit fates of the slots, as those of the sampler.
+     * Three-bit fates of the slots, as in the sampler.
      */
     slots(): Uint32Array<ArrayBuffer>;
     /**
-     * Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`,
-     * of which what is missing has its default; to an `Answer` with `LessonProgress`.
+     * Begins a run on a formula, and drops the previous one: takes `LessonField` and
+     * `LessonSettings`, possibly partial; returns an `Answer` with `LessonProgress`.
      */
     start(field: LessonField, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
     /**
-     * Begins a run on a model from points: `system` is the solved system that `Points.field`
-     * returns, `pulls` are those on its surface, and `bounds` is its `Bounds`; to an `Answer` with
+     * Begins a run on a model from points: `system` is the result of `Points.field`, `pulls` are
+     * those on its surface, and `bounds` is its `Bounds`. Returns an `Answer` with
      * `LessonProgress`.
      */
     start_points(system: Uint8Array | number[], pulls: readonly Pull[], bounds: Bounds, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
     /**
-     * Goes on by up to `budget` units of work: `LessonProgress`; null before a run.
+     * Does up to `budget` units of work: `LessonProgress`; null before a run.
      */
     step(budget: number): LessonProgress | null;
 }

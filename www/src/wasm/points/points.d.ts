@@ -21,12 +21,12 @@ export class Points {
      */
     constructor();
     /**
-     * The field as `Core.set_points` takes it; nothing before it is there.
+     * The field for `Core.set_points`; empty until it is solved.
      */
     field(): Uint8Array<ArrayBuffer>;
     /**
-     * Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name`
-     * is for reports. 0 centres are the default number of them.
+     * Begins a file, and drops the previous job: an `Answer` with `PointsProgress`. `name` is for
+     * reports. 0 centres mean their default number.
      */
     file(name: string, bytes: Uint8Array | number[], centres: number): Answer<PointsProgress, string>;
     free(): void;
@@ -35,8 +35,8 @@ export class Points {
      */
     info(): Answer<SolvedModel, string>;
     /**
-     * Begins a built-in model, and gives up what was begun before: an `Answer` with
-     * `PointsProgress`. 0 centres are the default number of them.
+     * Begins a built-in model, and drops the previous job: an `Answer` with `PointsProgress`. 0
+     * centres mean their default number.
      */
     model(id: string, centres: number): Answer<PointsProgress, string>;
     /**
