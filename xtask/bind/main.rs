@@ -1,9 +1,8 @@
 //! Writes a module and its JavaScript to a folder: `bind MODULE NAME FOLDER`.
 //!
-//! This is the work of the `wasm-bindgen` command with `--target web`, as a library: the lock file
-//! pins its version, and nobody has to install a tool. It is a program of its own, which is
-//! compiled while the modules are, because it takes longer to compile than all other tasks
-//! together.
+//! It does the work of the command `wasm-bindgen --target web`, as a library: the lock file pins
+//! its version, and no tool has to be installed. It is a separate program, compiled at the same
+//! time as the modules, because it takes longer to compile than all other tasks together.
 
 use anyhow::{Result, bail};
 use wasm_bindgen_cli_support::Bindgen;
@@ -15,8 +14,8 @@ fn main() -> Result<()> {
         .input_path(module)
         .out_name(name)
         .typescript(true)
-        // Keeps `new URL('…_bg.wasm', import.meta.url)` in the module, which is how bundlers find
-        // the wasm file.
+        // Keeps `new URL('…_bg.wasm', import.meta.url)` in the module, by which bundlers find the
+        // wasm file.
         .omit_default_module_path(false)
         .remove_producers_section(true)
         .web(true)?

@@ -1,4 +1,4 @@
-//! Benches, native and in a browser, with what a figure needs to be quoted: machine and commit.
+//! Benches, native and in a browser, with what a figure needs to be cited: machine and commit.
 
 use std::fs;
 use std::process::Command;
@@ -53,7 +53,7 @@ pub(crate) fn bench(project: &Project, options: &Options) -> Result<()> {
     show(&mut whole)
 }
 
-/// Runs a command whose output is the result.
+/// Runs a command and shows its output.
 fn show(command: &mut Command) -> Result<()> {
     let line = step::command_line(command);
     let status = command.status().with_context(|| format!("could not start `{line}`"))?;
@@ -63,7 +63,7 @@ fn show(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Processor, compiler and commit, as far as they can be found out.
+/// Processor, compiler and commit, as far as they are known.
 pub(crate) fn machine(project: &Project) -> String {
     let answer = |program: &str, arguments: &[&str]| {
         let mut command = Command::new(program);

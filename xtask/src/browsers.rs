@@ -1,5 +1,5 @@
-//! The core of the browser tests in Firefox and in WebKit. An engine that cannot be had is skipped,
-//! and the reason is printed.
+//! A part of the browser tests in Firefox and in WebKit. An engine that is not available is
+//! skipped, and the reason is printed.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -33,7 +33,7 @@ pub(crate) fn test(project: &Project, purpose: Purpose) -> Result<()> {
     Ok(())
 }
 
-/// The tests, which run under Node's own test runner.
+/// The tests, for Node's own test runner.
 const SUITE: [&str; 2] = ["--test", "tests/browsers/suite.js"];
 
 /// Returns the command that tests Firefox.
@@ -45,7 +45,7 @@ fn firefox() -> Result<Command> {
     Ok(command)
 }
 
-/// Returns the command that tests WebKitGTK, on a screen of its own where there is none.
+/// Returns the command that tests WebKitGTK, on a virtual screen if there is no other.
 fn webkit() -> Result<Command> {
     let packages = ["webkit2gtk-driver", "xvfb", "xauth"];
     let driver = or_install(|| on_path("WebKitWebDriver"), "WebKit", &packages)?;
@@ -61,7 +61,7 @@ fn webkit() -> Result<Command> {
     Ok(command)
 }
 
-/// Returns the browser that WebKitGTK brings for its tests, which is on no search path.
+/// Returns WebKitGTK's own test browser, which is on no search path.
 fn mini_browser() -> Option<PathBuf> {
     let libraries = fs::read_dir("/usr/lib").ok()?.flatten().map(|entry| entry.path());
     libraries
@@ -71,7 +71,7 @@ fn mini_browser() -> Option<PathBuf> {
         .find(|path| path.is_file())
 }
 
-/// Returns what `installed` finds, if need be after the packages that bring it were installed.
+/// Returns what `installed` finds, if necessary after installing the packages.
 fn or_install(installed: impl Fn() -> Option<PathBuf>, what: &str, packages: &[&str]) -> Result<PathBuf> {
     if let Some(path) = installed() {
         return Ok(path);

@@ -1,12 +1,12 @@
-//! The WebAssembly bundles: the core, what makes fields from points, the lesson, and the renderer
-//! for WebGPU and for WebGL2.
+//! The WebAssembly bundles: the core, the solver for points, the lesson, and the renderer for
+//! WebGPU and for WebGL2.
 //!
-//! One bundle is: cargo (SIMD) → wasm-bindgen → wasm-opt → `target/xtask/bundles` → `www/src/wasm`,
-//! where the page takes it from, whichever purpose it was built for. For development and for `cargo
-//! xtask test` cargo optimises less and wasm-opt is left out. The declarations are checked in,
-//! since the page's types are those of `src/web/`; the rest is not. A bundle is not built again
-//! when a hash over everything that goes into it is unchanged; when cargo then gives the same
-//! module as before, binding and optimising are skipped as well.
+//! A bundle is built in these steps: cargo (SIMD) → wasm-bindgen → wasm-opt →
+//! `target/xtask/bundles` → `www/src/wasm`, from where the page loads it, whatever its purpose. For
+//! development and for `cargo xtask test`, cargo optimises less and wasm-opt is left out. Only the
+//! declarations are checked in, because the page's types come from `src/web/`. A bundle is skipped
+//! if a hash over all its inputs is unchanged; if cargo produces the same module as before, binding
+//! and optimising are skipped, too.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -84,7 +84,7 @@ impl Bundle {
         }
     }
 
-    /// The stem of the bundle's files.
+    /// The name of the bundle's files, without extension.
     pub(crate) fn out_name(self) -> &'static str {
         match self {
             Self::Core => "core",
@@ -99,7 +99,7 @@ impl Bundle {
         format!("{}_bg.wasm", self.out_name())
     }
 
-    /// The class that JavaScript gets from the bundle.
+    /// The JavaScript class of the bundle.
     fn class(self) -> &'static str {
         match self {
             Self::Core => "Core",
@@ -109,7 +109,7 @@ impl Bundle {
         }
     }
 
-    /// The package that it is made of.
+    /// The package from which it is compiled.
     pub(crate) fn package(self) -> &'static str {
         match self {
             Self::Core => "marching-particles-core",
@@ -120,9 +120,8 @@ impl Bundle {
         }
     }
 
-    /// The core and the solver are built for speed: at level s the solver weighs 1.4 kB less and
-    /// takes 1.7 times as long. The renderers work on the GPU and the lesson is slow for a reader's
-    /// sake, so what counts is the time to load them.
+    /// The core and the solver are built for speed. The renderers work on the GPU and the lesson's
+    /// runs are slow on purpose, so the time to load them counts more.
     fn opt_level(self) -> &'static str {
         match self {
             Self::Core | Self::Points => "3",
@@ -131,11 +130,11 @@ impl Bundle {
         }
     }
 
-    /// Flags of the compiler for this bundle alone. A function of more than this cost is called
-    /// where LLVM's own limit, 250, would still copy it into its callers: the core weighs 7 % less.
-    /// Those that run often ask for it by `#[inline]`, so that sampling takes as many instructions
-    /// as before; at 40 it weighs 9 % less and takes 1 to 4 % more. While developing all have the
-    /// same flags, so that the library is compiled once.
+    /// Compiler flags of this bundle. A function with a higher inlining cost is called instead of
+    /// copied into its callers (LLVM's default is 250): the core weighs 7 % less. Hot functions are
+    /// marked `#[inline]`, so that sampling takes as many instructions as before; at 40 the core
+    /// weighs 9 % less and takes 1 to 4 % more. In development all bundles have the same flags, so
+    /// that the library is compiled once.
     fn flags(self, purpose: Purpose) -> &'static [&'static str] {
         match (self, purpose) {
             (Self::Core | Self::Points, _) | (_, Purpose::Development) => {
@@ -145,8 +144,8 @@ impl Bundle {
         }
     }
 
-    /// The folders under the root with the sources that the bundle is made of: what is in its
-    /// package and in those that this depends on.
+    /// The folders under the root with the sources of the bundle: those of its package and of its
+    /// dependencies.
     fn sources(self, project: &Project) -> Result<Vec<PathBuf>> {
         let (own, is_of_library) = match self {
             Self::Core => ("src/web/core", true),
@@ -178,7 +177,7 @@ impl Bundle {
     }
 }
 
-/// Builds the bundles that are not up to date, and puts them where the page takes them from.
+/// Builds the bundles that are out of date, and copies them to where the page loads them from.
 pub(crate) fn build(
     project: &Project,
     bundles: &[Bundle],
@@ -189,7 +188,7 @@ pub(crate) fn build(
     let read = |&bundle: &Bundle| Stamp::read(project, &target, bundle, purpose);
     let stamps: Vec<Stamp> = bundles.iter().map(read).collect::<Result<_>>()?;
     if !stamps.iter().all(Stamp::is_current) {
-        // Both are cargo's work, in folders of their own.
+        // Cargo does both, in separate folders.
         let (modules, binder) = thread::scope(|scope| {
             let binder = scope.spawn(|| binder(project));
             (compile(project, &target, &stamps, purpose), binder.join())
@@ -219,22 +218,22 @@ pub(crate) fn build(
     Ok(())
 }
 
-/// Where a bundle is built.
+/// The folder in which a bundle is built.
 fn folder(project: &Project, bundle: Bundle, purpose: Purpose) -> Result<PathBuf> {
     Ok(project.scratch("bundles")?.join(purpose.profile()).join(bundle.folder()))
 }
 
-/// What a bundle was made of when it was last built, and what it would be made of now.
+/// The inputs of a bundle when it was last built, and its present ones.
 struct Stamp {
     bundle: Bundle,
-    /// The file that keeps it.
+    /// The file in which they are stored.
     file: PathBuf,
-    /// Where the bundle is built.
+    /// The folder in which the bundle is built.
     folder: PathBuf,
-    /// A hash over what goes into the bundle now.
+    /// A hash over the present inputs.
     inputs: String,
     last: Value,
-    /// Whether the files of the last build are there as it left them.
+    /// Whether the files of the last build are unchanged.
     is_intact: bool,
 }
 
@@ -258,7 +257,7 @@ impl Stamp {
         self.is_intact && self.last["inputs"] == self.inputs.as_str()
     }
 
-    /// Makes the bundle of the module that cargo has compiled.
+    /// Makes the bundle from the compiled module.
     fn finish(&self, project: &Project, purpose: Purpose, binder: &Path, module: &Path) -> Result<()> {
         let Self { bundle, ref folder, .. } = *self;
         let process =
@@ -282,7 +281,7 @@ impl Stamp {
     }
 }
 
-/// A hash over everything that goes into a bundle.
+/// A hash over all inputs of a bundle.
 fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpose) -> Result<String> {
     let root = &project.root;
     let mut fingerprint = Fingerprint::default()
@@ -299,7 +298,7 @@ fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpo
     Ok(fingerprint.finish())
 }
 
-/// Identification of the steps after the compiler.
+/// Hash of the steps after the compiler.
 fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
     Ok(Fingerprint::default()
         .file(&project.root.join("xtask/src/bundle.rs"))?
@@ -309,8 +308,8 @@ fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
         .finish())
 }
 
-/// The flags for the wasm target. They are set here in full, so that `RUSTFLAGS` in the environment
-/// does not change what is published; paths of this machine are kept out of the panic messages.
+/// The flags for the wasm target. They are complete, so that `RUSTFLAGS` in the environment cannot
+/// change what is published; paths of this machine are removed from panic messages.
 fn rust_flags(project: &Project, bundle: Bundle, purpose: Purpose) -> Vec<String> {
     let mut flags = vec!["-Ctarget-feature=+simd128".to_owned()];
     flags.extend(bundle.flags(purpose).iter().map(|&flag| flag.to_owned()));
@@ -324,7 +323,7 @@ fn rust_flags(project: &Project, bundle: Bundle, purpose: Purpose) -> Vec<String
     flags
 }
 
-/// Compiles the packages of bundles that are not up to date, and returns the module of each.
+/// Compiles the packages of out-of-date bundles, and returns the module of each.
 fn compile(
     project: &Project,
     target: &WasmTarget,
@@ -336,16 +335,16 @@ fn compile(
         if together.iter().all(Stamp::is_current) {
             continue;
         }
-        // Those that are up to date are named, too: fewer packages may ask for fewer features of
-        // what they share, and cargo would compile that again.
+        // Up-to-date packages are listed, too: with fewer packages, shared dependencies may get
+        // fewer features, and cargo would recompile them.
         let bundles = || together.iter().map(|stamp| stamp.bundle);
         let mut command = target.cargo(project, "build");
         command
             .args(["--locked", "--profile", purpose.profile()])
             .args(bundles().flat_map(|bundle| ["--package", bundle.package()]))
             .arg("--message-format=json-render-diagnostics")
-            // Cargo lets one build at a time into a folder. This one is apart so that the native
-            // checks can run meanwhile.
+            // Cargo allows one build at a time in a folder. A separate one lets the native checks
+            // run meanwhile.
             .env("CARGO_TARGET_DIR", project.target.join("wasm"))
             .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", together[0].bundle.opt_level())
             .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project, together[0].bundle, purpose).join("\u{1f}"));
@@ -362,13 +361,13 @@ fn compile(
     Ok(modules)
 }
 
-/// Whether one call of cargo compiles both bundles, so that what they share is compiled once and no
-/// processor waits. WebGPU and WebGL2 are features of one library.
+/// Whether one call of cargo compiles both bundles, so that shared code is compiled once and all
+/// processors are busy. WebGPU and WebGL2 are features of one library, so they exclude each other.
 fn are_together(a: Bundle, b: Bundle, purpose: Purpose) -> bool {
     purpose == Purpose::Development && a != Bundle::Webgpu && b != Bundle::Webgpu
 }
 
-/// The program that writes the JavaScript of a module, compiled if need be.
+/// Compiles the program that writes the JavaScript of a module.
 fn binder(project: &Project) -> Result<PathBuf> {
     let mut command = Command::new(cargo());
     command.current_dir(&project.root).args(["build", "--quiet", "--package", "bind", "--locked"]);
@@ -394,8 +393,8 @@ fn bind(bundle: Bundle, binder: &Path, module: &Path, stage: &Path) -> Result<()
     declare(bundle, stage)
 }
 
-/// Rewrites the declarations in `stage` as they are checked in. The module's own exports are left
-/// out: the page calls the class, and their names change from build to build.
+/// Rewrites the declarations in `stage` for checking in. The module's own exports are left out: the
+/// page only uses the class, and their names change from build to build.
 fn declare(bundle: Bundle, stage: &Path) -> Result<()> {
     let file = stage.join(format!("{}.d.ts", bundle.out_name()));
     let mut text = String::new();
@@ -404,7 +403,7 @@ fn declare(bundle: Bundle, stage: &Path) -> Result<()> {
         is_of_module =
             if is_of_module { line != "}" } else { line.starts_with("export interface InitOutput") };
         if !is_of_module || line.ends_with('{') || line.contains("readonly memory:") {
-            // What a method returns is a copy outside of the module's memory.
+            // A method returns a copy outside the module's memory.
             text += &line.replace("Array;", "Array<ArrayBuffer>;");
             text += "\n";
         }
@@ -413,8 +412,7 @@ fn declare(bundle: Bundle, stage: &Path) -> Result<()> {
     Ok(fs::remove_file(stage.join(format!("{}_bg.wasm.d.ts", bundle.out_name())))?)
 }
 
-/// The declarations with the members of the class in the order of their names: the module's own
-/// order changes from build to build.
+/// Sorts the members of the class by name, because the module's order changes from build to build.
 fn in_order(text: &str, class: &str) -> String {
     let begin = format!("export class {class} {{\n");
     let Some((before, rest)) = text.split_once(&begin) else { return text.to_owned() };
@@ -434,7 +432,7 @@ fn in_order(text: &str, class: &str) -> String {
     format!("{before}{begin}{members}}}\n{after}")
 }
 
-/// Fails if the page's declarations of a bundle are not those of the bundle in `folder`.
+/// Fails if the checked-in declarations of a bundle differ from those in `folder`.
 fn hold_declarations(project: &Project, bundle: Bundle, folder: &Path, page: &Path) -> Result<()> {
     let file = format!("{}.d.ts", bundle.out_name());
     let known = fs::read_to_string(page.join(&file)).unwrap_or_default();
@@ -448,7 +446,7 @@ fn hold_declarations(project: &Project, bundle: Bundle, folder: &Path, page: &Pa
     Ok(())
 }
 
-/// The declarations alone: what differs only in its comments is the same.
+/// The declarations without comments, which are not compared.
 fn without_comments(text: &str) -> Vec<&str> {
     text.lines().filter(|line| !line.trim_start().starts_with(['/', '*'])).collect()
 }
@@ -470,8 +468,8 @@ fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
     fs::rename(&optimised, &bound).with_context(|| format!("could not replace {}", bound.display()))
 }
 
-/// Copies the files that differ to where the page takes them from. Each is replaced at once, so
-/// that a running development server never reads half of one.
+/// Copies changed files to where the page loads them from. Each is replaced atomically, so that a
+/// running development server never reads half a file.
 fn publish(folder: &Path, page: &Path) -> Result<()> {
     fs::create_dir_all(page).with_context(|| format!("could not create {}", page.display()))?;
     for old in files_under(page)? {

@@ -1,5 +1,5 @@
-//! The project's checks: those of every change, which continuous integration runs, and those that
-//! the published site is held to.
+//! The project's checks: those of every change, which continuous integration runs, and those of a
+//! release.
 
 use std::path::Path;
 use std::process::Command;
@@ -70,7 +70,7 @@ pub(crate) enum Part {
     Soak,
 }
 
-/// What every change is held to.
+/// The parts that run on every change.
 const USUAL: [Part; 7] =
     [Part::Format, Part::Lint, Part::Native, Part::LintWasm, Part::Parity, Part::Page, Part::Chromium];
 
@@ -95,15 +95,15 @@ const ALL: [Part; 17] = [
     Part::Soak,
 ];
 
-/// Parts that make and check the bundles of the page. They run beside those that compile natively,
-/// because the last crate of every build takes one processor only.
+/// Parts that build and check the bundles of the page. They run in parallel with native
+/// compilation, because the last crate of every build uses one processor only.
 const BUNDLES: [Part; 3] = [Part::Parity, Part::Release, Part::Page];
 
 /// Parts that drive a browser, which takes all processors and waits for time to pass: they run last
 /// and alone.
 const BROWSERS: [Part; 3] = [Part::Chromium, Part::Browsers, Part::Soak];
 
-/// Without WebAssembly and a browser.
+/// The parts without WebAssembly and browser.
 const FAST: [Part; 3] = [Part::Format, Part::Lint, Part::Native];
 
 /// Which checks to run.
@@ -136,18 +136,18 @@ impl Options {
     }
 }
 
-/// What the parts share.
+/// Data shared by the parts.
 struct Checks<'a> {
     project: &'a Project,
     /// The bundles that the page and its tests use.
     purpose: Purpose,
     chromium: Option<&'a Path>,
-    /// The variables that say which random cases are run.
+    /// The variables that choose the random cases.
     cases: [(&'static str, String); 2],
 }
 
-/// Runs the checks. Parts that fail do not keep the others from running; the first line of each
-/// failure is repeated at the end.
+/// Runs the checks. A failing part does not stop the others; the first line of each failure is
+/// repeated at the end.
 pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     let started = Instant::now();
     let parts = options.parts();
@@ -155,7 +155,7 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     let browsers = of(&|part| BROWSERS.contains(part));
     let bundles = of(&|part| BUNDLES.contains(part));
     let native = of(&|part| !BUNDLES.contains(part) && !BROWSERS.contains(part));
-    // What may be missing is looked for before the long builds start.
+    // Missing tools are reported before the long builds start.
     if !browsers.is_empty() || !bundles.is_empty() || native.contains(&Part::Gltf) {
         node::prepare(project)?;
     }
@@ -183,8 +183,8 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Chooses and prints the random cases: a tenth of them or all, from a seed that is of today unless
-/// the environment names one.
+/// Chooses and prints the random cases: a tenth or all of them, from today's seed unless the
+/// environment sets one.
 fn random_cases(is_all: bool) -> [(&'static str, String); 2] {
     const SEED: &str = "MARCHING_PARTICLES_SEED";
     const TENTHS: &str = "MARCHING_PARTICLES_TENTHS";
@@ -247,13 +247,13 @@ impl Checks<'_> {
         tested.map(drop)
     }
 
-    /// The variables that have the page's tests run everything, also what is marked `@all`: those
-    /// of the published site.
+    /// The variables for the page's tests: for the published site they run everything, including
+    /// tests marked `@all`.
     fn surveyed(&self) -> &'static [(&'static str, &'static str)] {
         if self.purpose == Purpose::Site { &[("ALL", "1")] } else { &[] }
     }
 
-    /// The browser tests, with variables that choose among them.
+    /// Runs the browser tests, with variables that choose among them.
     fn chromium(&self, variables: &[(&str, &str)]) -> Result<()> {
         self.site()?;
         let chromium = self.chromium.map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
@@ -266,8 +266,7 @@ impl Checks<'_> {
     }
 }
 
-/// Builds the bundles and the site as they are published, and holds them to the digests and the
-/// budgets.
+/// Builds the bundles and the site as published, and checks their digests and budgets.
 fn release(project: &Project) -> Result<()> {
     parity(project, Purpose::Site)?;
     site::build(project, Purpose::Site)?;
@@ -291,8 +290,8 @@ fn lint(project: &Project) -> Result<()> {
     step::run("lint (native)", &mut command, "").map(drop)
 }
 
-/// What is compiled natively and not for every change: the benches, and the renderer on Vulkan with
-/// its pictures.
+/// Clippy on native code that is not compiled for every change: the benches, and the renderer on
+/// Vulkan with its pictures.
 fn lint_rest(project: &Project) -> Result<()> {
     let mut command = cargo_at_root(project, &["clippy", "--all-targets", "--locked"]);
     command.args(["--package", "benches", "--package", "marching-particles-render", "--features"]);
@@ -300,8 +299,8 @@ fn lint_rest(project: &Project) -> Result<()> {
     step::run("lint (benches, Vulkan)", &mut command, "").map(drop)
 }
 
-/// One pass for all bundles but that for WebGL2: no line of the sources depends on which back end
-/// the renderer has.
+/// One pass for all bundles except that for WebGL2: no source line depends on the renderer's back
+/// end.
 fn lint_wasm(project: &Project) -> Result<()> {
     let mut command = WasmTarget::prepare(project)?.cargo(project, "clippy");
     for package in [
@@ -329,8 +328,8 @@ fn docs(project: &Project) -> Result<()> {
     dependent(project)
 }
 
-/// A program that depends on the library exports as WebAssembly what it wrote itself, and nothing
-/// of the page.
+/// A program that depends on the library exports to WebAssembly only its own functions, none of the
+/// page's.
 fn dependent(project: &Project) -> Result<()> {
     let target = WasmTarget::prepare(project)?;
     let folder = project.target.join("dependent");

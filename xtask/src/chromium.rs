@@ -11,25 +11,24 @@ use crate::node;
 use crate::project::{Project, on_path};
 use crate::step;
 
-/// Variables that name an executable, the one the page's tests read first.
+/// Variables that give the path of an executable; the one that the page's tests read comes first.
 const VARIABLES: [&str; 2] = ["CHROMIUM_PATH", "CHROME"];
 
-/// Names under which systems install the one without windows, in which a page takes a third less of
-/// the processor.
+/// Names of the headless build on different systems, which uses a third less of the processor.
 const HEADLESS: [&str; 2] = ["chromium-headless-shell", "chrome-headless-shell"];
 
-/// Names under which systems install the whole browser.
+/// Names of the full browser on different systems.
 const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
 
-/// Places that are on no search path.
+/// Paths outside the search path.
 const PLACES: [&str; 3] = [
     "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
     "/Applications/Chromium.app/Contents/MacOS/Chromium",
     r"C:\Program Files\Google\Chrome\Application\chrome.exe",
 ];
 
-/// Finds a Chromium that starts, or gets one: Debian's package without windows where the system may
-/// be changed, else Playwright's own, which goes into the user's cache.
+/// Finds a working Chromium, or installs one: Debian's headless package if the system may be
+/// changed, else Playwright's, which goes into the user's cache.
 pub(crate) fn find(project: &Project) -> Result<PathBuf> {
     for variable in VARIABLES {
         if let Some(path) = env::var_os(variable).map(PathBuf::from) {
@@ -57,7 +56,7 @@ pub(crate) fn find(project: &Project) -> Result<PathBuf> {
     if let Some(path) = installed(project) {
         return Ok(path);
     }
-    // What helps stands last: the output of the attempts is long.
+    // The advice comes last, because the output of the attempts is long.
     bail!(
         "{}\n\nNo Chromium was found, and none could be installed. Any one of these helps:\n\
          \x20 apt-get install chromium-headless-shell      (Debian, as root)\n\
@@ -68,19 +67,19 @@ pub(crate) fn find(project: &Project) -> Result<PathBuf> {
     )
 }
 
-/// The first Chromium without windows that starts.
+/// The first headless Chromium that starts.
 fn headless() -> Option<PathBuf> {
     HEADLESS.iter().filter_map(|name| on_path(name)).find(|path| starts(path))
 }
 
-/// The first Chromium on this machine that starts.
+/// The first installed Chromium that starts.
 fn installed(project: &Project) -> Option<PathBuf> {
     let named = NAMES.iter().filter_map(|name| on_path(name));
     let placed = PLACES.iter().map(PathBuf::from).filter(|path| path.is_file());
     named.chain(placed).chain(playwrights(project)).find(|path| starts(path))
 }
 
-/// Where Playwright would put its own.
+/// The path at which Playwright would install its own.
 fn playwrights(project: &Project) -> Option<PathBuf> {
     let ask = "import('@playwright/test').then(({ chromium }) => console.log(chromium.executablePath()))";
     let mut command = Command::new(node::node().ok()?);
@@ -91,6 +90,6 @@ fn playwrights(project: &Project) -> Option<PathBuf> {
 
 /// Whether the executable starts: a download without the system libraries it needs does not.
 fn starts(path: &Path) -> bool {
-    // Chrome on Windows prints no version; that it is there has to do.
+    // Chrome on Windows prints no version; its existence must suffice.
     cfg!(windows) && path.is_file() || step::capture(Command::new(path).arg("--version"), "").is_ok()
 }

@@ -1,4 +1,4 @@
-//! Packages of Debian, and of the systems that are made from it.
+//! Packages of Debian and derived systems.
 
 use std::fs;
 use std::process::Command;
@@ -9,15 +9,15 @@ use anyhow::{Result, bail};
 use crate::project::on_path;
 use crate::step;
 
-/// Installs packages, which bring what is called `what`, where the variable `CI` says that the
-/// machine is there for these checks: a system that belongs to somebody is not changed unasked.
+/// Installs packages, which provide `what`, if the variable `CI` marks the machine as one for
+/// checks: a person's system is not changed without asking.
 ///
 /// # Errors
 ///
-/// If it is not set, this is no such system, this process may not install packages, or the packages
-/// cannot be had. The error says which command installs them.
+/// If `CI` is not set, the system is not derived from Debian, this process may not install
+/// packages, or they cannot be downloaded. The error names the command that installs them.
 pub(crate) fn install(what: &str, packages: &[&str]) -> Result<()> {
-    /// Whether the index of packages has been fetched. It is fetched once.
+    /// Whether the package index has been fetched, which is done once.
     static INDEX: OnceLock<()> = OnceLock::new();
 
     let line = format!("apt-get install {}", packages.join(" "));

@@ -1,7 +1,7 @@
-//! Licences, sources and duplicates of the dependencies, by cargo-deny and `deny.toml`.
+//! Licences, sources and duplicates of the dependencies, checked by cargo-deny with `deny.toml`.
 //!
-//! The check looks at files of this machine only. It cannot fail because a registry is out of reach
-//! or because something new became known of a dependency: then the reason is printed, and the check
+//! The check reads only files of this machine. So it does not fail because a registry is
+//! unreachable or a vulnerability has become known. If it cannot run, the reason is printed and it
 //! is skipped.
 
 use std::process::Command;

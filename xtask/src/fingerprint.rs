@@ -1,5 +1,5 @@
-//! Content hashes that decide whether a step's inputs have changed. Times of files are not used: a
-//! checkout or a copy changes them without changing anything else.
+//! Content hashes that tell whether a step's inputs have changed. File times are not used: a
+//! checkout or a copy changes them without changing the content.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ impl Fingerprint {
         self
     }
 
-    /// Adds a file's content; a missing file counts as absent, which differs from empty.
+    /// Adds a file's content; a missing file differs from an empty one.
     pub(crate) fn file(mut self, path: &Path) -> Result<Self> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_file() {
@@ -30,7 +30,7 @@ impl Fingerprint {
         Ok(self)
     }
 
-    /// Adds every file under a folder, in the order of their paths.
+    /// Adds every file under a folder, ordered by path.
     pub(crate) fn tree(mut self, folder: &Path) -> Result<Self> {
         for path in files_under(folder)? {
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
@@ -46,7 +46,7 @@ impl Fingerprint {
     }
 
     fn part(&mut self, name: &str, content: &[u8]) {
-        // Lengths first, so that no two lists of parts give the same bytes.
+        // With the lengths first, different lists of parts never give the same bytes.
         self.0.update((name.len() as u64).to_le_bytes());
         self.0.update(name.as_bytes());
         self.0.update((content.len() as u64).to_le_bytes());

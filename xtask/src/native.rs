@@ -1,5 +1,5 @@
-//! The native tests: compiled once, then each executable run by itself, so that the time of every
-//! test is known.
+//! The native tests: compiled once, then each executable run separately, so that the time of every
+//! test is measured.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,8 +11,8 @@ use crate::project::{Project, cargo};
 use crate::step;
 use crate::times;
 
-/// The packages that are tested natively. Every command names them all, because another choice of
-/// packages, and with it of features, has cargo compile everything again.
+/// The packages tested natively. Every command names all of them, because with another set of
+/// packages, and so of features, cargo would recompile everything.
 pub(crate) const TESTED: [&str; 9] = [
     "--package",
     "marching-particles",
@@ -29,13 +29,13 @@ pub(crate) const TESTED: [&str; 9] = [
 struct Executable {
     name: String,
     path: PathBuf,
-    /// Where its package is.
+    /// The folder of its package.
     folder: PathBuf,
     is_example: bool,
 }
 
-/// Compiles and runs the tests and every example. `variables` are set for the tests. With `is_all`
-/// those run, too, that are ignored because they take long.
+/// Compiles and runs the tests and all examples. `variables` are set for the tests. With `is_all`,
+/// slow tests, which are otherwise ignored, run, too.
 pub(crate) fn test(project: &Project, variables: &[(&str, String)], is_all: bool) -> Result<()> {
     let mut executables = Vec::new();
     for (label, package) in
@@ -55,7 +55,7 @@ pub(crate) fn test(project: &Project, variables: &[(&str, String)], is_all: bool
             step::run(&label, command.current_dir(&scratch), "").map(drop)
         } else {
             if is_all {
-                // The one that makes data anew needs what is not here.
+                // The test that regenerates data needs files that are not in the repository.
                 command.args(["--include-ignored", "--skip", "the_bunnies_are_vertices"]);
             }
             step::task(&label, || run(command.current_dir(&executable.folder)))
@@ -79,7 +79,7 @@ fn cargo_test(project: &Project) -> Command {
     command
 }
 
-/// The tests and examples that cargo names in its messages.
+/// The tests and examples in cargo's messages.
 fn compiled(messages: &str) -> Result<Vec<Executable>> {
     let mut found = Vec::new();
     for message in messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()) {
@@ -109,8 +109,8 @@ fn compiled(messages: &str) -> Result<Vec<Executable>> {
     Ok(found)
 }
 
-/// Runs the tests of an executable and notes the time of each. The harness of the stable compiler
-/// tells times as JSON only if it is asked as that of a nightly one is.
+/// Runs the tests of an executable and records the time of each. The stable compiler's test harness
+/// reports times as JSON only if it is treated as a nightly one.
 fn run(command: &mut Command) -> Result<()> {
     command.args(["-Z", "unstable-options", "--report-time", "--format", "json"]).env("RUSTC_BOOTSTRAP", "1");
     let output = command.output().with_context(|| format!("could not start {command:?}"))?;

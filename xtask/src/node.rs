@@ -15,7 +15,7 @@ const MINIMUM_NODE: (u32, u32) = (20, 19);
 
 const GET_NODE: &str = "Install Node.js 20.19 or newer with npm: https://nodejs.org/en/download, or a package such as `nodejs npm`.";
 
-/// Makes sure that Node and npm are there and that the page's packages are those of its lock file.
+/// Checks that Node and npm are installed, and installs the page's packages as in its lock file.
 pub(crate) fn prepare(project: &Project) -> Result<()> {
     let node = node()?;
     let version = step::capture(Command::new(&node).arg("--version"), GET_NODE)?;

@@ -1,4 +1,4 @@
-//! The package for npm: built, packed and tried, not published.
+//! The npm package: built, packed and tested, not published.
 
 use anyhow::Result;
 
@@ -9,8 +9,8 @@ use crate::project::Project;
 /// The bundles in the package: all but the lesson's.
 const BUNDLES: [Bundle; 4] = [Bundle::Core, Bundle::Points, Bundle::Webgpu, Bundle::Webgl];
 
-/// Packs the package with the bundles of the site into `target/package`, and runs its tests in
-/// Node, which pack and install it themselves.
+/// Packs the package with the site's bundles into `target/package`, and runs its tests in Node,
+/// which pack and install it themselves.
 pub(crate) fn package(project: &Project) -> Result<()> {
     node::prepare(project)?;
     bundle::build(project, &BUNDLES, Purpose::Site, Declarations::Hold)?;

@@ -1,4 +1,4 @@
-//! The paper's tables and figures, made again: `docs/tables/paper.md` and the pictures in
+//! Reproduces the paper's tables and figures: `docs/tables/paper.md` and the pictures in
 //! `docs/images/paper`.
 
 use std::fs;

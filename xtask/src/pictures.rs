@@ -1,4 +1,4 @@
-//! The renderer's pictures, drawn natively, against those that are kept.
+//! The renderer's pictures, drawn natively and compared with the kept ones.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,7 +9,7 @@ use crate::debian;
 use crate::project::{Project, cargo};
 use crate::step;
 
-/// Folders in which the loader of Vulkan on Linux looks for drivers.
+/// Folders in which Vulkan's loader on Linux looks for drivers.
 const DRIVERS: [&str; 3] = ["/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"];
 
 /// Draws the pictures and compares them.
@@ -26,7 +26,7 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     step::run("pictures, drawn natively", &mut tests, &advice).map(drop)
 }
 
-/// Installs Debian's driver that draws without a graphics card, where there is no driver.
+/// Installs Debian's software driver if there is no driver.
 fn driver() -> Result<()> {
     let is_driver =
         |folder: &&str| Path::new(folder).read_dir().is_ok_and(|mut files| files.next().is_some());

@@ -39,14 +39,14 @@ impl Project {
         Ok(Self { www: root.join("www"), dist: root.join("dist"), root, target })
     }
 
-    /// A folder under the target folder for the tasks' own files, made if need be.
+    /// A folder under the target folder for the tasks' own files, created if necessary.
     pub(crate) fn scratch(&self, name: &str) -> Result<PathBuf> {
         let path = self.target.join("xtask").join(name);
         std::fs::create_dir_all(&path).with_context(|| format!("could not create {}", path.display()))?;
         Ok(path)
     }
 
-    /// `path` as a reader at the root would write it.
+    /// `path` relative to the root.
     pub(crate) fn relative<'a>(&self, path: &'a Path) -> &'a Path {
         path.strip_prefix(&self.root).unwrap_or(path)
     }

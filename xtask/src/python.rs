@@ -1,5 +1,5 @@
-//! Python: the interpreter that is there, environments with packages in them, and the tests of the
-//! Python package on a wheel that is built and installed for them.
+//! Python: the installed interpreter, environments with packages, and the tests of the Python
+//! package, for which a wheel is built and installed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,9 +13,9 @@ use crate::step;
 
 const LABEL: &str = "python";
 
-/// Builds the wheel as it would be published, installs it in a fresh environment, and runs its
-/// tests there. Without Python the check is skipped, and without what the notebook takes the
-/// notebook; the reason is printed.
+/// Builds the wheel as for publishing, installs it in a fresh environment, and runs its tests
+/// there. Without Python this check is skipped, and without the notebook's requirements the
+/// notebook is; the reason is printed.
 ///
 /// # Errors
 ///
@@ -31,7 +31,7 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     let (sources, scratch) = (project.root.join("python"), project.scratch("python")?);
     let tools = Environment::kept(&interpreter, scratch.join("tools"), &sources.join("tools.txt"), LABEL)?;
     let wheels = scratch.join("wheels");
-    // A wheel of before is not to be taken for the one that is built now.
+    // An old wheel must not be mistaken for the one that is built now.
     if wheels.exists() {
         fs::remove_dir_all(&wheels).with_context(|| format!("could not empty {}", wheels.display()))?;
     }
@@ -58,7 +58,7 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     step::run("python: tests", &mut tests, "").map(drop)
 }
 
-/// The interpreter, if the package is for its version.
+/// Returns the interpreter if the package supports its version.
 fn supported(interpreter: PathBuf) -> Result<PathBuf> {
     let mut version = Command::new(&interpreter);
     version.args(["-c", "import sys; sys.exit(sys.version_info < (3, 9))"]);
@@ -66,7 +66,7 @@ fn supported(interpreter: PathBuf) -> Result<PathBuf> {
     Ok(interpreter)
 }
 
-/// Finds a Python that makes environments with pip in them.
+/// Finds a Python that can create environments with pip.
 pub(crate) fn interpreter() -> Result<PathBuf> {
     let found = ["python3", "python"].into_iter().find_map(on_path);
     let python = found.context("Python is not on the search path (https://www.python.org/downloads)")?;
@@ -81,7 +81,7 @@ pub(crate) fn interpreter() -> Result<PathBuf> {
 pub(crate) struct Environment(PathBuf);
 
 impl Environment {
-    /// Makes an empty environment in a folder, in the place of what was there.
+    /// Creates an empty environment in a folder, and deletes its previous content.
     fn new(interpreter: &Path, folder: PathBuf, label: &str) -> Result<Self> {
         let mut create = Command::new(interpreter);
         create.args(["-m", "venv", "--clear"]).arg(&folder);
@@ -89,8 +89,8 @@ impl Environment {
         Ok(Self(folder))
     }
 
-    /// An environment with the packages of a list, which is made anew when the list or the version
-    /// of Python has changed.
+    /// An environment with the packages of a list. It is recreated when the list or the version of
+    /// Python changes.
     pub(crate) fn kept(interpreter: &Path, folder: PathBuf, list: &Path, label: &str) -> Result<Self> {
         let version = step::capture(Command::new(interpreter).arg("--version"), "")?;
         let wanted = Fingerprint::default().file(list)?.text("python", version.trim()).finish();
@@ -111,7 +111,7 @@ impl Environment {
         self.0.join(folder).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
     }
 
-    /// `pip install`, without what it installs.
+    /// `pip install`, without package names.
     fn pip(&self) -> Command {
         let mut install = Command::new(self.program("python"));
         install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);

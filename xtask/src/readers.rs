@@ -1,6 +1,6 @@
-//! The files of the command line against the programs that people read them with: MeshLab, trimesh,
-//! Open3D, libigl, meshio, pygltflib, pandas and NumPy, in a Python environment of the project's
-//! own. Without Python the check is skipped, and the reason is printed.
+//! Files of the command line, opened by other programs: MeshLab, trimesh, Open3D, libigl, meshio,
+//! pygltflib, pandas and NumPy, in a Python environment of the project. Without Python the check is
+//! skipped, and the reason is printed.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,7 +15,7 @@ use crate::step;
 
 const LABEL: &str = "files: the programs that read them";
 
-/// Packages of Debian with what MeshLab and Open3D are linked to.
+/// Packages of Debian with libraries that MeshLab and Open3D need.
 const LIBRARIES: [&str; 5] = ["libgl1", "libopengl0", "libusb-1.0-0", "libgomp1", "libx11-6"];
 
 /// Writes files of every format and has each program read them. Prints a table of programs and
@@ -23,7 +23,7 @@ const LIBRARIES: [&str; 5] = ["libgl1", "libopengl0", "libusb-1.0-0", "libgomp1"
 ///
 /// # Errors
 ///
-/// If the environment cannot be made, or a program finds a file faulty.
+/// If the environment cannot be created, or a program rejects a file.
 pub(crate) fn test(project: &Project) -> Result<()> {
     let python = match python::interpreter() {
         Ok(python) => python,
@@ -34,7 +34,7 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     };
     let environment = environment(project, &python)?;
     let mut build = Command::new(cargo());
-    // The executable that the native tests run.
+    // The executable of the native tests.
     build.current_dir(&project.root).arg("build").args(native::TESTED);
     step::run("command line: compile", build.args(["--bin", "marching-particles"]), "")?;
     let mut read = Command::new(environment);
@@ -46,7 +46,7 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     Ok(())
 }
 
-/// The Python of an environment with the programs of the list.
+/// The Python of an environment with the listed programs.
 fn environment(project: &Project, interpreter: &Path) -> Result<PathBuf> {
     let list = project.root.join("tests/readers/requirements.txt");
     let folder = project.scratch("readers")?.join("python");
@@ -60,7 +60,7 @@ fn environment(project: &Project, interpreter: &Path) -> Result<PathBuf> {
     Ok(own)
 }
 
-/// Loads the programs that need libraries of the system.
+/// Imports the programs that need system libraries.
 fn imports(python: &Path) -> Result<()> {
     step::capture(Command::new(python).args(["-c", "import pymeshlab, open3d"]), "").map(drop)
 }

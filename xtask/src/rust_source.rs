@@ -17,7 +17,7 @@ pub(crate) const SOURCE_IN_SYSROOT: &str = "lib/rustlib/src/rust/library";
 /// Debian's archive. Its index files are fetched over TLS and state each package's SHA-256.
 const DEBIAN: &str = "https://deb.debian.org/debian";
 
-/// The suites that may hold a compiler version, those with recent compilers first.
+/// The suites that may contain a compiler version, those with recent compilers first.
 const SUITES: [&str; 8] = [
     "sid",
     "forky",
@@ -29,13 +29,13 @@ const SUITES: [&str; 8] = [
     "experimental",
 ];
 
-/// The packages that hold the compiler's source: the suite's own compiler, and the one kept for
-/// building browsers.
+/// The packages with the compiler's source: the suite's own compiler, and the one kept for building
+/// browsers.
 const PACKAGES: [&str; 2] = ["rust-src", "rust-web-src"];
 
 /// The `library` folder of the compiler's source, from the first place that has it:
 /// `RUST_SRC_PATH`, another toolchain of the same compiler, a package installed under `/usr/src`,
-/// and Debian's archive.
+/// or Debian's archive.
 pub(crate) fn find(project: &Project, version: &str, release: &str) -> Result<PathBuf> {
     if let Some(path) = env::var_os("RUST_SRC_PATH").map(PathBuf::from) {
         if is_library(&path) {
@@ -77,7 +77,7 @@ fn in_other_toolchains(version: &str) -> Result<Option<PathBuf>> {
     Ok(None)
 }
 
-/// Fetches and unpacks the Debian package that holds the source of `release`.
+/// Downloads and unpacks the Debian package with the source of `release`.
 fn from_debian(project: &Project, release: &str) -> Result<PathBuf> {
     let folder = project.scratch("rust-src")?;
     let unpacked = folder.join("unpacked");
@@ -124,8 +124,7 @@ fn find_package(folder: &Path, release: &str) -> Result<Option<Package>> {
     let index = folder.join("Packages.xz");
     for suite in SUITES {
         let url = format!("{DEBIAN}/dists/{suite}/main/binary-all/Packages.xz");
-        // A suite that has been archived or does not exist is no reason to stop looking in the
-        // others.
+        // If a suite has been archived or does not exist, the others are searched.
         if step::run(&format!("Debian's index of {suite}"), &mut fetch(&url, &index), "").is_err() {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Which constants matter: the bench `sensitivity` with one of them at a time halved and doubled.
+//! Which constants matter: the bench `sensitivity` with each constant halved and doubled.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -26,7 +26,7 @@ const CONSTANTS: [&str; 13] = [
     "sampler/refine/net.rs:MAX_MOVE",
     "sampler/constraint/mod.rs:LONGEST",
 ];
-/// Folders of which the bench needs nothing.
+/// Folders that the bench does not need.
 const LEFT_OUT: [&str; 4] = ["target", "www", ".git", "corpus"];
 /// Number of the bench's figures, each a column.
 const FIGURES: usize = 6;
@@ -40,20 +40,20 @@ pub(crate) struct Options {
     constants: Vec<String>,
 }
 
-/// The lines of a run of the bench by their names, and the titles of its columns.
+/// The lines of a bench run by name, and the titles of its columns.
 struct Outcome {
     titles: Vec<String>,
     runs: BTreeMap<String, Vec<String>>,
 }
 
-/// Runs the bench as the sources are, and with each constant halved and doubled, and prints how
-/// much its figures change.
+/// Runs the bench with the present sources, and with each constant halved and doubled; prints how
+/// much the figures change.
 pub(crate) fn run(project: &Project, options: &Options) -> Result<()> {
     let tree = project.scratch("sensitivity")?;
     copy(&project.root, &tree)?;
     let default = || CONSTANTS.map(str::to_owned).to_vec();
     let constants = if options.constants.is_empty() { default() } else { options.constants.clone() };
-    // A name that is wrong is told before anything is built.
+    // A wrong name is reported before anything is built.
     for constant in &constants {
         varied(&tree, constant, 1.0)?;
     }
@@ -81,7 +81,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
             }
         }
     } else if fs::read(from)? != fs::read(to).unwrap_or_default() {
-        // Unchanged files keep their dates, so that cargo does not compile them again.
+        // Unchanged files keep their dates, so that cargo does not recompile them.
         fs::copy(from, to).with_context(|| format!("could not copy {}", from.display()))?;
     }
     Ok(())
@@ -148,7 +148,7 @@ fn print_row(figures: &[String], constant: &str, value: &str, others: &str) {
     println!("{constant:<48} {value:>8}  {others}  {}", figures.join("  "));
 }
 
-/// Prints by how much the means of the figures change, over the runs that end in both.
+/// Prints the change of the mean figures over the runs that finish in both cases.
 fn print_changes(constant: &str, value: &str, base: &Outcome, varied: &Outcome) {
     let mut sums = [[0.0; 2]; FIGURES];
     let (mut others, mut ended) = (0, 0);

@@ -1,5 +1,5 @@
-//! The development server. What the page needs at once is built before it starts, the other bundles
-//! while it serves.
+//! The development server. Bundles that the page needs at once are built before it starts, the
+//! others while it serves.
 
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -15,11 +15,10 @@ use crate::project::Project;
 use crate::site;
 use crate::step;
 
-/// How often the Rust sources are looked at.
+/// How often the Rust sources are checked for changes.
 const LOOK_EVERY: Duration = Duration::from_millis(400);
 
-/// Loaded into the server: it ends when its input does, that is when this process is gone, however
-/// it went.
+/// Loaded into the server: it ends when its input closes, which happens however this process ends.
 const END_WITH_INPUT: &str = "data:text/javascript,process.stdin.on('end',()=>process.exit()).resume()";
 
 /// Options of the development server.
@@ -40,12 +39,12 @@ pub(crate) struct Options {
     release_site: bool,
 }
 
-/// Builds what is out of date, serves the page, and rebuilds the bundles whenever a Rust source or
-/// a shader changes.
+/// Builds what is out of date, serves the page, and rebuilds the bundles after every change of a
+/// Rust source or a shader.
 pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
     let started = Instant::now();
-    // One renderer is enough, and that for WebGL2 runs in every browser. The last two are for what
-    // a visitor may ask for later.
+    // One renderer suffices, and WebGL2 runs in every browser. The last two bundles are for what a
+    // visitor may request later.
     let mut bundles = vec![Bundle::Core, Bundle::Webgl];
     bundles.extend(options.webgpu.then_some(Bundle::Webgpu));
     let first = bundles.len();
@@ -55,7 +54,7 @@ pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
     } else {
         // Without Node there is nothing to wait for.
         node::node()?;
-        // Fetching packages waits for the network, compiling does not.
+        // Fetching packages waits for the network while compiling uses the processor.
         thread::scope(|scope| {
             let packages = scope.spawn(|| node::prepare(project));
             let built =
@@ -86,15 +85,15 @@ pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
             println!("\n  sources changed");
         }
         seen = now;
-        // A source that does not compile is an everyday event: say so and keep serving the last
-        // good bundles.
+        // A source that does not compile is an everyday event: report it and keep serving the last
+        // valid bundles.
         if let Err(error) = bundle::build(project, &bundles, Purpose::Development, Declarations::Rewrite) {
             eprintln!("\nerror: {error:#}\n");
         }
     }
 }
 
-/// The server's process, ended with this one.
+/// The server's process, which ends with this one.
 struct Server(Child);
 
 impl Drop for Server {
@@ -127,12 +126,12 @@ fn start_vite(project: &Project, options: &Options) -> Result<Child> {
     command.spawn().context("could not start Vite")
 }
 
-/// Every source that goes into a bundle, with the time it was last written.
+/// Every source of a bundle, with the time of its last change.
 fn sources(project: &Project) -> Result<Vec<(PathBuf, Option<SystemTime>)>> {
     let mut files = files_under(&project.root.join("src"))?;
     files.extend(files_under(&project.root.join("shaders"))?);
     files.extend(["Cargo.toml", "Cargo.lock"].map(|name| project.root.join(name)));
-    // A file may vanish between being listed and being looked at.
+    // A file may be deleted between being listed and being examined.
     Ok(files
         .into_iter()
         .map(|file| (file.clone(), file.metadata().and_then(|metadata| metadata.modified()).ok()))

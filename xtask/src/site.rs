@@ -14,26 +14,26 @@ use crate::fingerprint::{files_under, sha256_of};
 use crate::node;
 use crate::project::Project;
 
-/// The largest gzip size, in kB, of what the page shows before any WebAssembly: HTML, style sheets
+/// The largest gzip size, in kB, of what the page loads before any WebAssembly: HTML, style sheets
 /// and scripts.
 ///
 /// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a
 /// commit of its own, which says why; no code is contorted to stay under one.
 const FIRST_PAINT_BUDGET_KB: f64 = 102.0;
 
-/// The largest gzip size, in kB, of what the lesson's page shows before any WebAssembly; its
-/// figures come to life after that.
+/// The largest gzip size, in kB, of what the lesson's page loads before any WebAssembly; its
+/// figures start after that.
 const LESSON_PAGE_BUDGET_KB: f64 = 51.0;
 
-/// The largest gzip size of a bundle, in kB: its module and its JavaScript. What
-/// [`FIRST_PAINT_BUDGET_KB`] says of budgets holds here too.
+/// The largest gzip size of a bundle, in kB: its module and its JavaScript. The note on
+/// [`FIRST_PAINT_BUDGET_KB`] applies here, too.
 fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
-        // A tenth of it are images: their readers, the spline and the unpacking of gzip. The core
-        // samples them, and no other module could hold their voxels without a second copy. A
-        // twelfth are triangle meshes, for the same reason.
+        // A tenth is for images: their readers, the spline and gzip decompression. The core samples
+        // them, and another module would need a second copy of the voxels. A twelfth is for
+        // triangle meshes, for the same reason.
         Bundle::Core => 1280.0,
-        // A fifth of it are edges of fields and solids of two fields, which every field can have.
+        // A fifth is for edges of fields and solids of two fields, which every field can have.
         Bundle::Points => 255.0,
         Bundle::Lesson => 290.0,
         Bundle::Webgpu => 90.0,
@@ -41,8 +41,8 @@ fn budget_kb(bundle: Bundle) -> f64 {
     }
 }
 
-/// Where the site is built: `dist/` what is published, in the target folder what only the quick
-/// tests look at.
+/// The folder of the built site: `dist/` for the published site, a folder under the target folder
+/// for the quick tests.
 pub(crate) fn folder(project: &Project, purpose: Purpose) -> PathBuf {
     match purpose {
         Purpose::Site => project.dist.clone(),
@@ -67,7 +67,7 @@ struct Line {
     budget_kb: Option<f64>,
 }
 
-/// Prints the sizes of what a visitor loads; an error if a part is over its budget.
+/// Prints the sizes of what a visitor loads; an error if a part exceeds its budget.
 pub(crate) fn report_sizes(project: &Project) -> Result<()> {
     let mut shipped = BTreeMap::new();
     for file in files_under(&project.dist)? {

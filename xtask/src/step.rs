@@ -1,5 +1,5 @@
-//! Running a command as a named step: what it does, how long it took, and on failure the command,
-//! its output and what to do.
+//! Runs a command as a named step: prints its name and time, and on failure the command, its output
+//! and advice.
 
 use std::io::{Read, Write as _};
 use std::process::{Command, Stdio};
@@ -10,13 +10,13 @@ use anyhow::{Result, anyhow};
 
 static VERBOSE: AtomicBool = AtomicBool::new(false);
 
-/// Whether steps pass their commands' output through as it comes.
+/// Sets whether the output of commands is shown as it comes.
 pub(crate) fn set_verbose(verbose: bool) {
     VERBOSE.store(verbose, Ordering::Relaxed);
 }
 
-/// A step that has been announced and not yet finished. It has a line at its begin and one at its
-/// end, since other steps may run meanwhile.
+/// A running step. It prints a line at its start and one at its end, since other steps may run
+/// meanwhile.
 pub(crate) struct Step {
     label: String,
     started: Instant,
@@ -29,13 +29,13 @@ impl Step {
         Self { label: label.to_owned(), started: Instant::now() }
     }
 
-    /// Says that the step succeeded, with `note` beside its time.
+    /// Reports success, with `note` after the time.
     pub(crate) fn done(self, note: &str) {
         let gap = if note.is_empty() { "" } else { "  " };
         println!("  {} … ok {}{gap}{note}", self.label, seconds(self.started.elapsed()));
     }
 
-    /// Says that the step failed.
+    /// Reports failure.
     pub(crate) fn failed(self) {
         println!("  {} … FAILED {}", self.label, seconds(self.started.elapsed()));
     }
@@ -56,8 +56,8 @@ pub(crate) fn task<T>(label: &str, work: impl FnOnce() -> Result<T>) -> Result<T
     }
 }
 
-/// Runs `command` as a step and returns what it wrote to its standard output. A failure carries the
-/// command line, all it wrote, and `advice`.
+/// Runs `command` as a step and returns its standard output. An error contains the command line,
+/// all its output, and `advice`.
 pub(crate) fn run(label: &str, command: &mut Command, advice: &str) -> Result<String> {
     task(label, || capture(command, advice))
 }
@@ -96,7 +96,7 @@ pub(crate) fn capture(command: &mut Command, advice: &str) -> Result<String> {
     Err(with_advice(text))
 }
 
-/// A command's output without cargo's lines on what went well.
+/// A command's output without cargo's progress lines.
 fn without_progress(output: &str) -> String {
     const WELL: [&str; 7] =
         ["Compiling ", "Checking ", "Downloading ", "Downloaded ", "Blocking ", "Updating ", "Documenting "];
@@ -115,7 +115,7 @@ fn drain(mut pipe: impl Read, is_error: bool) -> Vec<u8> {
             Ok(n) => {
                 all.extend_from_slice(&buffer[..n]);
                 if VERBOSE.load(Ordering::Relaxed) {
-                    // A closed terminal must not lose the output kept for the failure report.
+                    // The output is kept for the failure report even if the terminal is closed.
                     let _ = if is_error {
                         std::io::stderr().write_all(&buffer[..n])
                     } else {
@@ -127,7 +127,7 @@ fn drain(mut pipe: impl Read, is_error: bool) -> Vec<u8> {
     }
 }
 
-/// The command as one could type it, with the variables set for it and its folder.
+/// The command as one could type it, with its variables and its folder.
 pub(crate) fn command_line(command: &Command) -> String {
     let mut words = Vec::new();
     for (key, value) in command.get_envs() {

@@ -1,4 +1,4 @@
-//! Where the time of the checks goes: every part with its seconds, and the slowest tests.
+//! The time of the checks: the seconds of every part, and the slowest tests.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-/// How many tests the table names.
+/// Number of tests in the table.
 const SLOWEST: usize = 10;
 
 /// Parts and tests, with their seconds.
@@ -15,21 +15,21 @@ static PARTS: Mutex<Vec<(String, f64)>> = Mutex::new(Vec::new());
 static TESTS: Mutex<Vec<(String, f64)>> = Mutex::new(Vec::new());
 
 fn add(list: &Mutex<Vec<(String, f64)>>, name: String, seconds: f64) {
-    // A list of times has no state that a panic elsewhere could leave half-written.
+    // A panic elsewhere cannot leave a list of times half-written.
     list.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((name, seconds));
 }
 
-/// Notes the time of a part.
+/// Records the time of a part.
 pub(crate) fn part(name: &str, took: Duration) {
     add(&PARTS, name.to_owned(), took.as_secs_f64());
 }
 
-/// Notes the time of a test in seconds.
+/// Records the time of a test in seconds.
 pub(crate) fn test(name: impl Into<String>, seconds: f64) {
     add(&TESTS, name.into(), seconds);
 }
 
-/// Notes the times in a report of Vitest, a JSON file.
+/// Records the times from a Vitest report, a JSON file.
 pub(crate) fn vitest(file: &Path) {
     let report = read(file);
     for group in array(&report["testResults"]) {
@@ -41,7 +41,7 @@ pub(crate) fn vitest(file: &Path) {
     }
 }
 
-/// Notes the times in a report of Playwright, a JSON file.
+/// Records the times from a Playwright report, a JSON file.
 pub(crate) fn playwright(file: &Path) {
     fn walk(suite: &Value) {
         array(&suite["suites"]).iter().for_each(walk);
@@ -57,7 +57,7 @@ pub(crate) fn playwright(file: &Path) {
     walk(&read(file));
 }
 
-/// A report that is missing has no times.
+/// A missing report has no times.
 fn read(file: &Path) -> Value {
     fs::read(file).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
 }
@@ -67,7 +67,7 @@ fn array(value: &Value) -> &[Value] {
 }
 
 /// Prints the parts in the order in which they ended, and the slowest tests; writes all tests to
-/// `file`, the slowest first.
+/// `file`, slowest first.
 pub(crate) fn print(whole: Duration, file: &Path) {
     let take = |list: &Mutex<Vec<(String, f64)>>| {
         std::mem::take(&mut *list.lock().unwrap_or_else(std::sync::PoisonError::into_inner))

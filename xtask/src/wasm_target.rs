@@ -1,10 +1,10 @@
 //! The compiler's `wasm32-unknown-unknown` target.
 //!
-//! Where it is missing it is added through rustup. Where rustup's server cannot be reached, or
-//! there is no rustup, the standard library is compiled from its source as part of every wasm build
-//! (cargo's `-Zbuild-std`, which the stable compiler accepts under `RUSTC_BOOTSTRAP=1`). The
-//! compiler looks for that source inside its own folder, so where it has to be put there, it is put
-//! in a copy of the toolchain made of hard links; the toolchain itself is left alone.
+//! If it is missing it is added through rustup. If rustup or its server is not available, the
+//! standard library is compiled from source in every wasm build (cargo's `-Zbuild-std`, which the
+//! stable compiler accepts with `RUSTC_BOOTSTRAP=1`). The compiler looks for that source in its own
+//! folder, so it is put into a copy of the toolchain made of hard links; the toolchain itself is
+//! not changed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,16 +21,16 @@ pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 
 /// A way to compile for the target.
 pub(crate) struct WasmTarget {
-    /// The compiler to use in place of cargo's own.
+    /// The compiler to use instead of cargo's own.
     rustc: Option<PathBuf>,
     /// Whether the standard library is compiled from source.
     from_source: bool,
-    /// Identification of the compiler: the output of `rustc -vV`.
+    /// Identifies the compiler: the output of `rustc -vV`.
     pub(crate) version: String,
 }
 
 impl WasmTarget {
-    /// Finds the target, or sets it up.
+    /// Finds the target, or installs it.
     pub(crate) fn prepare(project: &Project) -> Result<Self> {
         let version = step::capture(Command::new(rustc()).arg("-vV").current_dir(&project.root), "")?;
         let sysroot =
@@ -65,7 +65,7 @@ impl WasmTarget {
         command.current_dir(&project.root).args([subcommand, "--target", TARGET]);
         if let Some(rustc) = &self.rustc {
             command.env("RUSTC", rustc);
-            // Clippy's driver looks for its sysroot here first, else beside itself.
+            // Clippy's driver looks for its sysroot here first.
             if let Some(sysroot) = rustc.ancestors().nth(2) {
                 command.env("SYSROOT", sysroot);
             }
@@ -93,8 +93,7 @@ fn add_by_rustup(project: &Project) -> Result<()> {
     step::run(&format!("compiler target {TARGET} (rustup)"), &mut command, "").map(drop)
 }
 
-/// A compiler whose sysroot holds the standard library's source: `None` for cargo's own, if it has
-/// it.
+/// A compiler whose sysroot contains the standard library's source; `None` if cargo's own does.
 fn toolchain_with_source(project: &Project, sysroot: &Path, version: &str) -> Result<Option<PathBuf>> {
     if sysroot.join(SOURCE_IN_SYSROOT).join("std/Cargo.toml").is_file() {
         return Ok(None);
@@ -122,8 +121,8 @@ fn toolchain_with_source(project: &Project, sysroot: &Path, version: &str) -> Re
     Ok(Some(rustc))
 }
 
-/// Links the compiler, its libraries and the host's standard library. Documentation and sources are
-/// left out.
+/// Links the compiler, its libraries and the host's standard library, but not documentation and
+/// sources.
 fn link_toolchain(sysroot: &Path, copy: &Path) -> Result<()> {
     let executable = format!("bin/rustc{}", std::env::consts::EXE_SUFFIX);
     link_file(&sysroot.join(&executable), &copy.join(&executable))?;
@@ -149,7 +148,7 @@ fn link_tree(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A hard link, or a copy where the file systems differ.
+/// A hard link, or a copy on another file system.
 fn link_file(from: &Path, to: &Path) -> Result<()> {
     if let Some(parent) = to.parent() {
         fs::create_dir_all(parent).with_context(|| format!("could not create {}", parent.display()))?;
