@@ -1,4 +1,4 @@
-//! Errors of the core as exceptions of Python.
+//! Converts errors of the core to exceptions of Python.
 
 use marching_particles::field::formula::Thickness;
 use marching_particles::session::{Condition, Fault, FaultKind, SolidSettings};
@@ -21,7 +21,7 @@ mod python {
 /// The exception of a formula. Python counts characters where Rust counts bytes.
 pub(crate) fn of_formula(error: &FormulaError, text: &str) -> PyErr {
     let characters = |byte: usize| text.get(..byte).map_or(0, |before| before.chars().count());
-    // A parameter is no part of the text.
+    // A parameter has no place in the text.
     let has_place = error.kind != FormulaErrorKind::BadParameter;
     let span = has_place.then(|| (characters(error.span.start), characters(error.span.end)));
     let choices = error.choices.to_vec();
@@ -34,7 +34,7 @@ pub(crate) fn of_formula(error: &FormulaError, text: &str) -> PyErr {
     ))
 }
 
-/// The exception of what a session refuses: of the formula of a thickness, or of a setting.
+/// The exception for a session's refusal of a thickness formula or of a setting.
 pub(crate) fn of_fault(fault: &Fault, solid: &SolidSettings) -> PyErr {
     match &solid.thickness {
         Thickness::Formula(text) => of_text(fault, text),
@@ -67,7 +67,7 @@ fn of_text(fault: &Fault, text: &str) -> PyErr {
     ))
 }
 
-/// The exception of an argument that has no effect beside the others.
+/// The exception of an argument that has no effect with the others.
 pub(crate) fn without_effect(argument: &str, condition: Condition) -> PyErr {
     let needed = match (condition.name, condition.value, condition.equal) {
         ("sampling", "adaptive", _) => "without adaptive=True",
@@ -105,7 +105,7 @@ pub(crate) fn of_value(error: &ValueError) -> PyErr {
     }
 }
 
-/// The exception that a function has raised, itself.
+/// The exception that a function raised, unchanged.
 fn of_field(error: &FieldError) -> PyErr {
     match error.get().downcast_ref::<PyErr>() {
         Some(raised) => Python::attach(|py| raised.clone_ref(py)),

@@ -1,4 +1,4 @@
-//! What is sampled: a formula, functions of Python, or a surface through points.
+//! The fields that can be sampled: a formula, functions of Python, or a surface through points.
 
 use crate::errors;
 use marching_particles::extent;
@@ -14,25 +14,25 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// Slices of a fit between two looks for Ctrl-C, of about a millisecond each.
+/// Slices of a fit between two checks for Ctrl-C, about a millisecond each.
 const FIT_SLICES: u32 = 50;
 
-/// A field that is shared.
+/// A shared field.
 type Shared = Arc<dyn marching_particles::Field>;
 
 /// A field.
 #[pyclass(frozen, module = "marching_particles._core")]
 pub(crate) struct Field {
     pub(crate) field: Shared,
-    /// The box that it is sampled in where none is asked for; without it one is fitted.
+    /// The default box for sampling; without it a box is fitted.
     bounds: Option<Bounds>,
-    /// The request for a formula by itself; none for other fields.
+    /// The request for the formula if the field is only a formula; none for other fields.
     formula: Option<FieldRequest>,
 }
 
 #[pymethods]
 impl Field {
-    /// The field of a formula with these values of its parameters.
+    /// The field of a formula with these parameter values.
     #[staticmethod]
     fn formula(text: &str, parameters: Vec<(String, f64)>) -> PyResult<Self> {
         let mut formula = Formula::parse(text).map_err(|error| errors::of_formula(&error, text))?;
@@ -44,8 +44,8 @@ impl Field {
         Ok(Self { formula: Some(request), ..Self::new(Arc::new(formula), None) })
     }
 
-    /// The field of a function that takes an array of points (n, 3) and returns a float64 array of
-    /// n values, and of one that returns gradients (n, 3). Both arrays are C-contiguous.
+    /// The field of a function from an array of points (n, 3) to a float64 array of n values, and
+    /// of an optional one to gradients (n, 3). Both arrays are C-contiguous.
     #[staticmethod]
     #[pyo3(signature = (values, gradients=None))]
     fn function(values: Py<PyAny>, gradients: Option<Py<PyAny>>) -> Self {
@@ -59,8 +59,8 @@ impl Field {
         Self::new(field, None)
     }
 
-    /// The field put together of pieces, functions as [`Self::function`] takes them, by one that
-    /// returns an int64 array of the index of the piece at each point.
+    /// The field put together of pieces, which are functions as in [`Self::function`]. `labels`
+    /// returns an int64 array with the index of the piece at each point.
     #[staticmethod]
     fn piecewise(labels: Py<PyAny>, pieces: Vec<Py<PyAny>>) -> Self {
         let labels = move |points: &[DVec3], out: &mut [u32]| -> PyResult<()> {
@@ -90,7 +90,7 @@ impl Field {
         Self::fitted(py, "points.ply", file, centres, is_cut)
     }
 
-    /// [`Self::points`] of the content of a file of this name.
+    /// [`Self::points`] for the content of a file of this name.
     #[staticmethod]
     fn file(
         py: Python<'_>,
@@ -102,9 +102,9 @@ impl Field {
         Self::fitted(py, name, content, centres, is_cut)
     }
 
-    /// The field of a surface in an image, with what is known of it as JSON. The bytes are those of
-    /// voxels of this type, of which the index along the first axis changes fastest; `rows` is the
-    /// affine map from indices to points.
+    /// The field of a surface in an image, with its facts as JSON. The bytes are voxels of this
+    /// type, the index along the first axis changing fastest; `rows` is the affine map from indices
+    /// to points.
     #[staticmethod]
     #[pyo3(signature = (voxels, voxel_type, size, rows, iso, label, smooth, is_dark_inside))]
     #[allow(clippy::too_many_arguments, reason = "they are the keywords of the package's function")]
@@ -140,8 +140,8 @@ impl Field {
         })
     }
 
-    /// The field of a triangle mesh, which keeps edges as `edges` says: "auto", "none" or an angle
-    /// in degrees.
+    /// The field of a triangle mesh. `edges` tells which edges stay sharp: "auto", "none" or an
+    /// angle in degrees.
     #[staticmethod]
     fn mesh(
         py: Python<'_>,
@@ -156,7 +156,7 @@ impl Field {
         py.detach(|| Self::meshed(TriangleMesh::new(vertices, faces), edges, smooth))
     }
 
-    /// [`Self::mesh`] of the content of a file of this name.
+    /// [`Self::mesh`] for the content of a file of this name.
     #[staticmethod]
     fn mesh_file(
         py: Python<'_>,
@@ -168,35 +168,35 @@ impl Field {
         py.detach(|| Self::meshed(TriangleMesh::read(name, content), edges, smooth))
     }
 
-    /// The union, in a box around those of both fields if they are known.
+    /// The union, in a box around the boxes of both fields if they are known.
     fn union(&self, other: &Self) -> Self {
         self.with(other, marching_particles::union, self.joined(other))
     }
 
-    /// The intersection, which lies in the box of either field.
+    /// The intersection; the box of either field contains it.
     fn intersection(&self, other: &Self) -> Self {
         self.with(other, marching_particles::intersection, self.known().or_else(|| other.known()))
     }
 
-    /// The difference, which lies in the box of this field.
+    /// The difference; the box of this field contains it.
     fn difference(&self, other: &Self) -> Self {
         self.with(other, marching_particles::difference, self.known())
     }
 
-    /// The smooth union. A smooth minimum is below the lesser value by a sixth of the width at
-    /// most: the box has room for it.
+    /// The smooth union. A smooth minimum is at most a sixth of the width below the smaller value,
+    /// so the box is enlarged by that.
     fn smooth_union(&self, other: &Self, width: f64) -> Self {
         let bounds = self.joined(other).map(|bounds| bounds.enlarged(width / 6.0));
         self.with(other, |a, b| marching_particles::smooth_union(a, b, width), bounds)
     }
 
-    /// The field less the distance.
+    /// The field minus the distance.
     fn offset(&self, distance: f64) -> Self {
         let bounds = self.known().map(|bounds| bounds.enlarged(distance.max(0.0)));
         Self::combined(marching_particles::offset(Arc::clone(&self.field), distance), bounds)
     }
 
-    /// Whether it is a formula by itself.
+    /// Whether the field is only a formula.
     #[getter]
     fn is_formula(&self) -> bool {
         self.formula.is_some()
@@ -209,13 +209,13 @@ impl Field {
     }
 }
 
-/// A triangle mesh, with which one that was made of it can be compared.
+/// A triangle mesh, with which a new mesh of it can be compared.
 #[pyclass(frozen, module = "marching_particles._core")]
 pub(crate) struct Mesh(MeshField);
 
 #[pymethods]
 impl Mesh {
-    /// How far a mesh is from this one, as JSON.
+    /// The distance of a mesh from this one, as JSON.
     fn compare(
         &self,
         py: Python<'_>,
@@ -286,7 +286,7 @@ impl Field {
         })
     }
 
-    /// Gives the field to a session, in this box, in its own or in one that is to be fitted.
+    /// Gives the field to a session, in this box, else the field's default box, else a fitted one.
     pub(crate) fn take(&self, session: &mut Session, bounds: Option<Bounds>) -> PyResult<()> {
         let bounds = bounds.or(self.bounds);
         let taken = match &self.formula {
@@ -309,13 +309,13 @@ impl Field {
         Self::combined(rule(Arc::clone(&self.field), Arc::clone(&other.field)), bounds)
     }
 
-    /// The box around those of both fields.
+    /// The box around the boxes of both fields.
     fn joined(&self, other: &Self) -> Option<Bounds> {
         self.known().zip(other.known()).map(|(own, other)| own.joined(&other))
     }
 }
 
-/// What a function of Python returns for points. It may keep their array, which is a copy.
+/// Calls a Python function with points. It may keep their array, which is a copy.
 fn on_points<'py>(py: Python<'py>, function: &Py<PyAny>, points: &[DVec3]) -> PyResult<Bound<'py, PyAny>> {
     let flat: &[f64] = bytemuck::cast_slice(points);
     let array = PyArray1::from_slice(py, flat).reshape([points.len(), 3])?;
@@ -331,7 +331,7 @@ fn call(function: &Py<PyAny>, points: &[DVec3], out: &mut [f64]) -> PyResult<()>
     })
 }
 
-/// Points as a file, which is what the core fits surfaces to.
+/// Points as a PLY file, since the core fits surfaces to files.
 fn ply(points: &[f64], normals: Option<&[f64]>) -> Vec<u8> {
     let names = if normals.is_some() { &["x", "y", "z", "nx", "ny", "nz"][..] } else { &["x", "y", "z"] };
     let mut file = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", points.len() / 3);

@@ -1,5 +1,5 @@
-//! The compiled half of the Python package `marching_particles`. It takes what the Python half,
-//! `package/`, has checked, and gives arrays, tuples and JSON back.
+//! The compiled half of the Python package `marching_particles`. It takes arguments that the Python
+//! half, `package/`, has checked, and returns arrays, tuples and JSON.
 
 mod errors;
 mod field;
@@ -15,7 +15,7 @@ use run::{Sample, sample};
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SETTINGS", settings_table())?;
-    // The smallest and the largest number that is accepted.
+    // The smallest and the largest accepted number.
     module.add("CENTRES", (*CENTRES.start(), *CENTRES.end()))?;
     module.add_class::<Field>()?;
     module.add_class::<Mesh>()?;
@@ -23,8 +23,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(sample, module)?)
 }
 
-/// The settings as JSON: of each its argument, its name, the type of its values, their range and
-/// whether it is a share of the diagonal of the box.
+/// The settings as JSON: for each its argument, its name, the type and range of its values, and
+/// whether it is a share of the box's diagonal.
 fn settings_table() -> String {
     let rows = settings().into_iter().map(|setting| {
         let choices: Vec<&str> = setting.choices.iter().map(|choice| choice.value).collect();

@@ -1,4 +1,4 @@
-//! A run, and the particles it leads to.
+//! A run, and its particles.
 
 use crate::errors;
 use crate::field::Field;
@@ -17,22 +17,22 @@ use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Units of work between two looks for Ctrl-C: milliseconds of a formula.
+/// Units of work between two checks for Ctrl-C: some milliseconds for a formula.
 const BUDGET: u32 = 5_000;
-/// Slices of the search for a box between two looks, of 10 to 50 microseconds each.
+/// Slices of the search for a box between two checks, 10 to 50 microseconds each.
 const SLICES: u32 = 500;
 
-/// What a program asks for beside the field, as its Python half gives it in JSON.
+/// The arguments of a run except the field, as JSON from the Python half.
 #[derive(Deserialize)]
 struct Options {
     settings: Settings,
     lengths: Lengths,
     solid: SolidSettings,
-    /// The argument by which each setting of the table was given.
+    /// The argument that gave each setting of the table.
     given: BTreeMap<String, String>,
 }
 
-/// Samples a field. The GIL is released but for calls of functions of Python.
+/// Samples a field. The GIL is released except while Python functions are called.
 #[pyfunction]
 #[pyo3(signature = (field, options, *, spacing, bounds, values, measure, progress))]
 #[expect(clippy::too_many_arguments, reason = "they are named, and Python's")]
@@ -69,7 +69,7 @@ pub(crate) fn sample(
     py.detach(|| run(field, options, spacing, bounds, &values, measured, progress.as_ref()))
 }
 
-/// A function of place, by a formula or by a function of Python.
+/// A function of place: a formula or a function of Python.
 #[derive(FromPyObject)]
 pub(crate) enum Function {
     Formula(String),
@@ -131,7 +131,7 @@ fn run(
     Ok(Sample(sample.recorded(record.map_or_else(RecordText::default, |json| RecordText::new(&json)))))
 }
 
-/// Why a measurement has ended: an exception, or the error of the run as one.
+/// The exception that ended a measurement.
 struct Ended(PyErr);
 
 impl From<marching_particles::Error> for Ended {
@@ -152,7 +152,7 @@ impl From<Ended> for PyErr {
     }
 }
 
-/// The particles of a run. Every method makes its arrays anew: the Python half keeps them.
+/// The particles of a run. Every method creates new arrays, which the Python half caches.
 #[pyclass(frozen, module = "marching_particles._core")]
 pub(crate) struct Sample(marching_particles::Sample);
 
@@ -165,7 +165,7 @@ fn rows<T: numpy::Element + bytemuck::Pod>(
     PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
 }
 
-/// Indices as Python's libraries take them. There are far fewer than 2³¹ rows.
+/// Indices as signed integers, which Python's libraries expect. There are far fewer than 2³¹ rows.
 fn signed(triangles: Vec<[u32; 3]>) -> Vec<[i32; 3]> {
     triangles.into_iter().map(|triangle| triangle.map(u32::cast_signed)).collect()
 }
@@ -201,7 +201,7 @@ impl Sample {
         PyArray1::from_iter(py, self.0.particles().level.iter().map(|level| level.cast_signed()))
     }
 
-    /// The columns that were asked for, by name.
+    /// The requested columns by name.
     fn values<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyArray1<f32>>)> {
         let column = |added: &NamedValues| (added.name.clone(), PyArray1::from_slice(py, &added.values));
         self.0.values().iter().map(column).collect()
@@ -211,8 +211,8 @@ impl Sample {
         rows(py, py.detach(|| signed(self.0.buffers(Vertices::Columns).triangles)))
     }
 
-    /// Points, normals and faces of the mesh with one vertex for each particle, and the row that
-    /// each vertex is.
+    /// Points, normals and faces of the mesh with one vertex per particle, and the row of each
+    /// vertex.
     fn mesh<'py>(&self, py: Python<'py>) -> PyResult<Mesh<'py>> {
         let mesh = py.detach(|| self.0.buffers(Vertices::Joined));
         let points = mesh.positions.iter().map(|p| p.to_array()).collect();
@@ -231,12 +231,12 @@ impl Sample {
         told(&self.0.report().warnings)
     }
 
-    /// Those about the mesh.
+    /// Code, severity and sentence of each warning about the mesh.
     fn mesh_warnings(&self, py: Python<'_>) -> Vec<(&'static str, &'static str, String)> {
         told(&py.detach(|| self.0.mesh_warnings()))
     }
 
-    /// Corners of the box that was sampled.
+    /// Corners of the sampled box.
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let bounds = self.0.bounds();
         (bounds.min, bounds.max)

@@ -75,7 +75,7 @@ class Image(Field):
         if voxels.flags.f_contiguous:
             flat, size = voxels.ravel(order="F"), voxels.shape
         else:
-            # The last axis changes fastest, and so it is the first one of the core.
+            # The last axis changes fastest, so it becomes the core's first one.
             flat, size = np.ascontiguousarray(voxels).ravel(), voxels.shape[::-1]
             rows = rows[:, [2, 1, 0, 3]]
         field, known = _core.Field.image(

@@ -7,7 +7,7 @@ import json
 from . import _core
 from ._fields import integer, numbers
 
-#: The settings of the core: of each its argument here, its name, the kind of its values and more.
+#: The settings of the core: for each its argument here, its name, the kind of its values and more.
 SETTINGS = json.loads(_core.SETTINGS)
 
 _SIZES = ("count", "spacing", "radius")
@@ -29,7 +29,7 @@ def settings_of(options):
         raise ValueError(f"{' and '.join(sizes)} exclude each other: give one of them")
     # The package has room for whatever is asked for.
     settings, lengths, solid = {"max_particles": 4_400_000}, {}, {}
-    # The argument by which each setting was given.
+    # The argument that gave each setting.
     given = {}
     if "spacing" in options:
         settings["radius"] = _length("spacing", options.pop("spacing")) / 2
@@ -70,7 +70,7 @@ def settings_of(options):
     return json.dumps({"settings": settings, "lengths": lengths, "solid": solid, "given": given})
 
 
-#: The settings that are True or False here, with what they are if True.
+#: The settings that are True or False here, with their values if True.
 _FLAGS = {"sampling": "adaptive", "box_faces": "closed", "box_cell": "periodic"}
 
 
@@ -88,7 +88,7 @@ def _share(name, text):
     try:
         if digits[-1:] != "%":
             raise ValueError
-        # Rounded once, as the same share of the library is.
+        # Rounded once, like the same share in the library.
         return float(digits[:-1].strip() + "e-2")
     except ValueError:
         what = 'a length, or a share of the diagonal of the box such as "1%"'

@@ -9,7 +9,7 @@ from . import _core
 from ._fields import Field, numbers
 from ._sample import sample
 
-# Settings of the front, which the refined method does without.
+# Settings of the front, which the refined method does not use.
 _OF_FRONT = ("relax", "match_tolerance", "gaps")
 
 

@@ -106,7 +106,7 @@ class Places(TypedDict):
 
 
 class _Calls(TypedDict, total=False):
-    # Of functions alone.
+    # Only for functions.
     calls: int
 
 

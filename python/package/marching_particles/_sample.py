@@ -55,7 +55,7 @@ class Sample:
     first asked for, and kept.
     """
 
-    #: How far the mesh is from the one that :func:`remesh` was given, a dict; else None.
+    #: The distance of the mesh from the one given to :func:`remesh`, a dict; else None.
     change = None
 
     def __init__(self, core):
@@ -328,7 +328,7 @@ def sample(
 
 
 def _spacing(spacing, core_field, params):
-    # Its formula has the parameters of the one that is sampled.
+    # A spacing formula has the parameters of the sampled one.
     if isinstance(spacing, str) and core_field.is_formula:
         return spacing
     return _function("spacing", spacing, params)
