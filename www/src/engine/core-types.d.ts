@@ -504,7 +504,7 @@ export type LabelFacts = {
   voxels: number,
 };
 
-/** A part of a run, before which a snapshot is taken. */
+/** A part of a run; a snapshot may be kept before it. */
 export type LessonChapter = {
   /** Number of the first event of the chapter in the run. */
   first_event: number,
@@ -543,7 +543,7 @@ export type LessonChapter = {
   iteration: number, });
 
 /** An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`],
-* [`Event::Divided`] and [`Event::Died`] change the particles; the others tell why. */
+* [`Event::Divided`] and [`Event::Died`] change the particles; the others explain why. */
 export type LessonEvent = { "type": "seed",
 /** Index of the seed. */
 particle: number,
@@ -599,17 +599,17 @@ normal: [number, number, number],
 distance: number, } | { "type": "gathered",
 /** The particle. */
 particle: number,
-/** Distance within which they are looked for. */
+/** Distance within which neighbours are searched. */
 reach: number,
-/** The particles of any sheet that were found, by index. */
+/** The particles found, on any sheet. */
 neighbours: Array<LessonNearby>, } | { "type": "compared",
 /** The particle that places the child. */
 parent: number,
 /** Number of the slot. */
 slot: number,
-/** Position at which the child was compared: the predicted one, or that of the landing. */
+/** Position at which the child was compared, predicted or on the surface. */
 position: [number, number, number],
-/** The nearest particle; none if none is near, or if it is a child that still has to be
+/** The nearest particle; none if none is near, or if the nearest is a child that is not yet
 * projected. */
 against: number | null,
 /** Distance to the nearest; none if nothing is near. */
@@ -636,7 +636,7 @@ parent: number,
 slot: number,
 /** The fate. */
 fate: SlotFate,
-/** The new particle, or the one that was there. */
+/** The new particle, or the existing one. */
 particle: number | null, } | { "type": "done",
 /** The particle. */
 particle: number,
@@ -646,7 +646,7 @@ evaluations: number, } | { "type": "arc",
 parent: number,
 /** The particle before the free space; none if the whole circle is free. */
 before: number | null,
-/** The particle behind the free space, in the direction of growing angles. */
+/** The particle after the free space, in the direction of increasing angles. */
 behind: number | null,
 /** Directions of the particles `before` and `behind` in the frame. */
 angles_rad: [number, number], } | { "type": "start",
@@ -654,8 +654,8 @@ angles_rad: [number, number], } | { "type": "start",
 parent: number,
 /** Number of the slot. */
 slot: number,
-/** The point I of Fig. 7c, on the circle of the child before it; none for the first child
-* of a seed. */
+/** The point I of Fig. 7c, on the circle of the previous child; none for the first child of
+* a seed. */
 tangent: [number, number, number] | null,
 /** The point s, in the tangent plane. */
 position: [number, number, number],
@@ -665,7 +665,7 @@ radius: number, } | { "type": "push",
 parent: number,
 /** Number of the slot. */
 slot: number,
-/** Place after the push. */
+/** Position after the push. */
 position: [number, number, number],
 /** Repulsion radius at `position`. */
 radius: number, } | { "type": "push_on_circle",
@@ -673,18 +673,18 @@ radius: number, } | { "type": "push_on_circle",
 parent: number,
 /** Number of the slot. */
 slot: number,
-/** Place after the push. */
+/** Position after the push. */
 position: [number, number, number],
 /** Repulsion radius at `position`. */
 radius: number,
-/** Largest overlap with another particle, as a share of r_i + r_j; negative if there is
-* none. */
+/** Largest overlap with another particle, as a share of r_i + r_j; negative without an
+* overlap. */
 overlap: number, } | { "type": "room",
 /** The particle that places the child. */
 parent: number,
 /** Number of the slot. */
 slot: number,
-/** Angle that the child's diameter takes. */
+/** Angle that the child's diameter occupies. */
 phi_rad: number,
 /** Angle that is free. */
 tau_rad: number,
@@ -696,18 +696,18 @@ particle: number,
 width: number | null, } | { "type": "step_begins",
 /** Number of the step, from 1. */
 step: number,
-/** Size of the step: the share of the force by which a particle moves. */
+/** Size of the step: the factor between the force and the particle's move. */
 size: number,
 /** Energy per particle before it. */
 energy: number, } | { "type": "moved",
 /** The particle. */
 particle: number,
-/** Sum of the repulsion, in the tangent plane; the step size times it is the move. */
+/** Sum of the repulsion, in the tangent plane; the move is the step size times this. */
 force: [number, number, number],
-/** Target of the move, in the tangent plane; in Witkin and Heckbert's system with the way
-* back to the surface. */
+/** Target of the move in the tangent plane; in Witkin and Heckbert's system it includes the
+* return to the surface. */
 target: [number, number, number],
-/** The place on the surface. */
+/** Position on the surface. */
 position: [number, number, number],
 /** Unit normal at `position`. */
 normal: [number, number, number],
@@ -728,7 +728,7 @@ iteration: number,
 particles: number,
 /** Mean energy of the particles, or mean sum of their squared overlaps. */
 energy: number, } | { "type": "divided",
-/** The particle, whose place one child takes. */
+/** The particle, which one child replaces. */
 particle: number,
 /** Index of the other child. */
 child: number,
@@ -746,17 +746,17 @@ iteration: number,
 particles: number,
 /** Longest move, in radii. */
 largest_move: number,
-/** Mean move, in radii: the system has settled once this is small and nothing divides or
+/** Mean move, in radii. The system has settled once it stays small and nothing divides or
 * dies for a while. */
 mean_move: number, };
 
-/** A surface given by a formula, as the page knows it. */
+/** A surface given by a formula, in the page's form. */
 export type LessonField = {
   /** Text of the formula. */
   formula: string,
   /** Parameters with their values. */
   parameters: Array<Parameter>,
-  /** Box that is sampled. */
+  /** Box to sample. */
   bounds: Bounds,
 };
 
@@ -770,7 +770,7 @@ export type LessonIterate = {
   slope: number,
 };
 
-/** The events at which a particle was added, was treated and was done, by their numbers. */
+/** The numbers of the events at which a particle was added, treated and done. */
 export type LessonLife = {
   /** The event at which the particle was added. */
   born: number | null,
@@ -780,11 +780,10 @@ export type LessonLife = {
   done: number | null,
 };
 
-/** Whether a particle with which a child was identified stays among the neighbours of the parent
-* (§4.4). */
+/** Whether a particle that a child was identified with remains a neighbour of the parent (§4.4). */
 export type LessonMatched = "leave" | "stay";
 
-/** Method that covers the surface. */
+/** Method that places particles on the surface. */
 export type LessonMethod = "front" | "witkin_heckbert" | "forces";
 
 /** A particle near another one. */
@@ -807,8 +806,8 @@ export type LessonParticle = {
   normal: [number, number, number],
   /** Repulsion radius. */
   radius: number,
-  /** The particle that placed this one; none for a seed and in particle systems, where no index
-  * lasts. */
+  /** The particle that placed this one; none for a seed, and in particle systems, whose indices
+  * change. */
   parent: number | null,
   /** Generation level; in a particle system the number of fissions since the first particle. */
   level: number,
@@ -816,7 +815,7 @@ export type LessonParticle = {
   front: number,
 };
 
-/** Order of the projection of children and their comparison with the particles that exist. */
+/** The order in which children are projected and compared with existing particles. */
 export type LessonPlacing = "one_by_one" | "level_by_level";
 
 /** Progress of a run. */
@@ -831,9 +830,9 @@ export type LessonProgress = {
   evaluations: number,
   /** Pushes of one particle by another that were summed for a move so far. */
   interactions: number,
-  /** Relaxation steps, or iterations of a particle system, that are over. */
+  /** Number of completed relaxation steps or iterations. */
   steps: number,
-  /** Whether a particle system has come to rest. */
+  /** Whether a particle system has settled. */
   is_settled: boolean,
   /** Whether the limit on particles was reached. */
   is_capped: boolean,
@@ -844,11 +843,11 @@ export type LessonProgress = {
 /** The method that moves a child onto the surface (§4.3). */
 export type LessonProjection = "circle" | "newton";
 
-/** The choices of a run. `Default` gives those of the paper; where it names no value, those of the
-* fast sampler. */
+/** The choices of a run. `Default` gives the paper's values, and the fast sampler's where the paper
+* states none. */
 export type LessonSettings = {
-  /** Method that covers the surface. Of the settings below, the two particle systems use those of
-  * the sizes, the seeds, `residual`, `max_iterations` and `max_particles`. */
+  /** Method that places particles on the surface. Of the settings below, the two particle systems
+  * use the sizes, the seeds, `residual`, `max_iterations` and `max_particles`. */
   method: LessonMethod,
   /** Whether all particles have one radius (§4), or one that follows the curvature (§5). */
   sampling: 'uniform' | 'adaptive',
@@ -857,23 +856,23 @@ export type LessonSettings = {
   radius: number,
   /** Law for the radius of an adaptive particle, given the curvature. */
   law: 'chord_error' | 'max_curvature' | 'sum_of_curvatures',
-  /** The number that the law scales: for `chord_error` the gap between the surface and a triangle
-  * of neighbours, a length; for the other two the radius over the radius of curvature. */
+  /** Scale of the law: for `chord_error` the gap between the surface and a triangle of
+  * neighbours, a length; for the other two the radius divided by the radius of curvature. */
   law_scale: number,
   /** Smallest radius of an adaptive particle, a length. */
   radius_min: number,
-  /** Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of
-  * the surface's diameter, a radius at which a particle divides whatever its energy; 0 has it
-  * measured. */
+  /** Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system the radius
+  * at which a particle divides whatever its energy, half of the surface's diameter; with 0 it
+  * is measured. */
   radius_max: number,
   /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that
-  * it takes. The paper compares them as they are, which is 1: on a lattice, where the two are
-  * equal, rounding then decides. */
+  * it occupies. The paper's share is 1; on a lattice, where the two are equal, rounding then
+  * decides. */
   fit: number,
-  /** Points near the surface at which fronts begin, in this order, each when the one before it
-  * has closed. Other seeds are looked for only if none are given. */
+  /** Points near the surface where fronts begin, in this order; each begins when the front before
+  * it has closed. Other seeds are searched only if this is empty. */
   seeds: Array<[number, number, number]>,
-  /** Seed of the random choice of the first seed point, where no seed points are given. */
+  /** Random seed for the choice of the first seed point, if `seeds` is empty. */
   seed: number,
   /** Method that moves a child onto the surface. */
   projection: LessonProjection,
@@ -881,7 +880,7 @@ export type LessonSettings = {
   start: LessonStart,
   /** Order in which waiting particles are treated. */
   order: LessonOrder,
-  /** Whether matched particles leave the neighbours. */
+  /** Whether matched particles are removed from the neighbours. */
   matched: LessonMatched,
   /** A child is identified with a particle within this distance, in 2r. */
   match_tolerance: number,
@@ -893,16 +892,16 @@ export type LessonSettings = {
   residual: number,
   /** Relaxation steps. */
   relax_steps: number,
-  /** Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33
-  * of the overlap in adaptive. */
+  /** Size of a relaxation step. The default is 0.6 σ² with σ = r in uniform sampling, and 0.33 of
+  * the overlap in adaptive sampling. */
   step_size: number | null,
-  /** A particle system that has not come to rest after so many iterations ends all the same. */
+  /** A particle system ends after this many iterations even if it has not settled. */
   max_iterations: number,
-  /** The run stops at this many particles. More than [`MAX_PARTICLES`] of them can be asked for. */
+  /** The run stops at this number of particles. It may exceed [`MAX_PARTICLES`]. */
   max_particles: number,
 };
 
-/** The start of the search on the circle. */
+/** Where the search on the circle starts. */
 export type LessonStart = "tangent" | "curvature";
 
 /** The limits of what the core accepts. */
@@ -1007,11 +1006,11 @@ export type MeshChange = {
   to_new: MeshDistances,
   /** Distances of points of the new mesh from the old one. */
   to_old: MeshDistances,
-  /** Volume of the old and of the new mesh; that of an open one depends on the origin. */
+  /** Volume of the old and the new mesh; for an open mesh it depends on the origin. */
   volume: [number, number],
-  /** Area of the old and of the new mesh. */
+  /** Area of the old and the new mesh. */
   area: [number, number],
-  /** Largest distance of the sharp edges of the old mesh from the new one; none without such
+  /** Largest distance from the sharp edges of the old mesh to the new mesh; none without sharp
   * edges. */
   edges: number | null,
 };
@@ -1030,11 +1029,11 @@ export type MeshComponent = {
 
 /** Distances of points from a surface, in the units of the mesh. */
 export type MeshDistances = {
-  /** Their mean. */
+  /** Mean distance. */
   mean: number,
-  /** The distance that 99 % of them do not exceed. */
+  /** 99th percentile. */
   most: number,
-  /** The largest. */
+  /** Largest distance. */
   largest: number,
 };
 
@@ -1068,7 +1067,7 @@ export type MeshPart = {
   patches: number,
   /** Edges of the mesh at which two patches meet. */
   edges: number,
-  /** Vertices at which three or more of these meet. */
+  /** Vertices where three or more of these edges meet. */
   corners: number,
   /** Sharp edges that fade out within a patch, and are rounded. */
   faded: number,
@@ -1167,12 +1166,12 @@ export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" 
 export type Placement = {
   /** Length of a unit of the formula, in the unit of the file; positive. */
   scale: number,
-  /** Unit of the file. 3MF names it, and GLB is in metres, to which lengths are converted; other
-  * formats have no place for it. Without one, numbers stay what they are: metres in GLB,
+  /** Unit of the file. 3MF names it, and for GLB lengths are converted to metres; other formats
+  * cannot express it. Without a unit, numbers are not converted: they mean metres in GLB,
   * millimetres in 3MF. */
   unit: Unit | null,
-  /** Axis of the formula that points up in the file: along z, but in GLB along y, as its
-  * specification has it. */
+  /** Axis of the formula that points up in the file: along z, in GLB along y, as its
+  * specification requires. */
   up: UpAxis,
 };
 
@@ -1477,7 +1476,7 @@ export type SurfaceEntry = {
   name: string,
   /** Formula of f, or an equation; f < 0 inside. */
   formula: string,
-  /** Box that is sampled. */
+  /** Box to sample. */
   bounds: Bounds,
   /** Algebraic degree; none for a transcendental surface. */
   degree: number | null,
@@ -1509,7 +1508,7 @@ export type Unsampled = {
 /** Axis of the formula's coordinates. */
 export type UpAxis = "x" | "y" | "z";
 
-/** How particles become vertices of a mesh file. It makes a difference on sharp edges, where a
+/** How particles become vertices of a mesh file. The choices differ on sharp edges, where a
 * particle has a normal for each side. */
 export type Vertices = "joined" | "split" | "columns";
 
@@ -1521,7 +1520,7 @@ export type VerticesChoice = {
   label: string,
   /** Explanation in one line. */
   help: string,
-  /** Extensions of the formats for which it makes a difference. */
+  /** Extensions of the formats in which it makes a difference. */
   formats: Array<string>,
 };
 
