@@ -245,7 +245,7 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
     let corners = solid.mesh.all_corners();
     let count = grid.block_count();
     let numbers = |range: core::ops::Range<usize>| range.map(|number| grid.block(number)).collect::<Vec<_>>();
-    // Of each block: the nearest triangle, its distance, and the winding number at the middle.
+    // For each block: the nearest triangle, its distance, and the winding number at the middle.
     let of_block = |block: [usize; 3]| {
         let middle = grid.middle(block);
         let found = tree.nearest(middle);
@@ -327,7 +327,7 @@ fn smooth(grid: &Grid, values: &mut [f32], width: f64) {
     values.iter_mut().zip(twice).for_each(|(once, twice)| *once = 2.0 * *once - twice);
 }
 
-/// The voxels of a block in an order in which consecutive ones are neighbours.
+/// The voxels of a block in such an order that consecutive ones are neighbours.
 fn snake(at: usize) -> [usize; 3] {
     let turned = |k: usize, is_turned: bool| if is_turned { SIDE - 1 - k } else { k };
     let [i, j, k] = [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE];

@@ -219,8 +219,8 @@ impl Core {
         self.opened = None;
     }
 
-    /// Changes the field to a surface of the last opened file. Of the `FieldRequest` the file's
-    /// parameters count (`iso`, `label`, `smooth` and `dark` of an image, `edges` and `smooth` of a
+    /// Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
+    /// parameters (`iso`, `label`, `smooth` and `dark` of an image, `edges` and `smooth` of a
     /// mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
     /// `FieldAnswer`. After an error the last valid field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
@@ -239,8 +239,8 @@ impl Core {
     /// Changes the field to a function that takes the coordinates of up to 512 points and an array
     /// for f at each of them. Returns an `Answer` with `FieldAnswer`. With `labels`, the function
     /// also takes the label of a piece, whose values it writes; `labels` writes the labels at
-    /// points. Of the `FieldRequest` the box counts. After a function has thrown none is called
-    /// again, and the run ends.
+    /// points. Only the box of the `FieldRequest` is used. After a function has thrown, none is
+    /// called again, and the run ends.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_function(
         &mut self,

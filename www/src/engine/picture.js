@@ -123,7 +123,7 @@ function deviceEvents(store, retry) {
     },
     onFallback(/** @type {string} */ kind, /** @type {string} */ message, isLate = false) {
       const isLast = kind === 'canvas2d';
-      // At the start it is expected that the browser lacks some kinds. Later the user is told.
+      // Missing kinds are normal at the start; later fallbacks are reported to the user.
       if (store.backend.value === 'starting' && !isLast && !isLate) return;
       store.notice.value = {
         id: 'fallback',

@@ -158,8 +158,8 @@ export class Lab {
   /**
    * Returns a run, made once for the same settings.
    * @param {Partial<LessonSettings>} change  of the usual settings
-   * @param {{ particles?: number, keep?: boolean }} [how]  `particles`: how many there should be about, unless a radius
-   *   is given; `keep`: events will be asked for
+   * @param {{ particles?: number, keep?: boolean }} [how]  `particles`: their approximate number, unless a radius
+   *   is given; `keep`: events will be requested
    * @returns {Promise<LabRun>}
    */
   async run(change, { particles = PARTICLES, keep = false } = {}) {

@@ -20,7 +20,7 @@ export class SamplingClient {
   #onLoadFailed;
 
   /**
-   * Whether the page shows the curvature and a mesh, and the formula of the value it shows. A new worker is told again.
+   * Whether the page shows the curvature and a mesh, and the formula of the value it shows. A new worker gets them, too.
    */
   #wishes = { curvature: false, mesh: false, value: '' };
   /** Files that are being written. */

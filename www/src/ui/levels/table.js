@@ -10,7 +10,7 @@ import { formatCount, plural } from '../format.js';
 
 /** @param {Pick<Columns, 'count' | 'tally' | 'adaptive' | 'lastLevel' | 'curves'>} particles @returns {LevelTable} */
 export function levelTable({ count, tally, adaptive, lastLevel: last, curves }) {
-  // Of no particles there are no numbers.
+  // Without particles there are no numbers.
   const fresh = new Uint32Array(last + 1);
   fresh.set(tally.fresh.subarray(0, last + 1));
   const seeds = new Uint32Array(last + 1);

@@ -43,7 +43,7 @@ export function createMeshButton(engine, toast, print) {
       if (newState === 'closed') untracked(engine.leaveMesh);
     });
     document.body.append(holder);
-    // A mesh is of no use beside a formula with an error; the caret stays in the formula. Choosing another method
+    // A mesh is of no use while the formula has an error; the caret stays in the formula. Choosing another method
     // closes the panel, so that its effect is seen.
     live(holder, () => {
       if (engine.fieldError.value || methodOf() !== method) holder.hidePopover();

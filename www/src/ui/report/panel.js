@@ -27,7 +27,7 @@ const DRAWN = {
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {Description} description
- * @param {HTMLElement} title  beside which a folded report says how it is
+ * @param {HTMLElement} title  next to which a folded report shows its summary
  */
 export function mountReport(body, engine, description, title) {
   // During a run the previous figures stay, dimmed, except for the count, which is that of the caption.

@@ -234,13 +234,13 @@ export class Core {
      * Changes the field to a function that takes the coordinates of up to 512 points and an array
      * for f at each of them. Returns an `Answer` with `FieldAnswer`. With `labels`, the function
      * also takes the label of a piece, whose values it writes; `labels` writes the labels at
-     * points. Of the `FieldRequest` the box counts. After a function has thrown none is called
-     * again, and the run ends.
+     * points. Only the box of the `FieldRequest` is used. After a function has thrown, none is
+     * called again, and the run ends.
      */
     set_function(_function: (points: Float64Array, out: Float64Array, piece?: number) => void, request: Partial<FieldRequest>, labels?: (points: Float64Array, out: Uint32Array) => void): Answer<FieldAnswer, Fault>;
     /**
-     * Changes the field to a surface of the last opened file. Of the `FieldRequest` the file's
-     * parameters count (`iso`, `label`, `smooth` and `dark` of an image, `edges` and `smooth` of a
+     * Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
+     * parameters (`iso`, `label`, `smooth` and `dark` of an image, `edges` and `smooth` of a
      * mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
      * `FieldAnswer`. After an error the last valid field stays.
      */

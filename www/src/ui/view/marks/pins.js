@@ -65,7 +65,7 @@ export function pinMark(engine, stage, pins) {
 }
 
 /**
- * What a drag starts from; `diagonal`: of the box.
+ * The state at the start of a drag; `diagonal`: of the box.
  * @typedef {{
  *   parameters: Record<string, number>, pulls: readonly Pull[], diagonal: number, pins: readonly Vec3[],
  * }} Start
