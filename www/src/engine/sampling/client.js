@@ -20,7 +20,7 @@ export class SamplingClient {
   #onLoadFailed;
 
   /**
-   * Whether the page shows the curvature and a mesh, and the formula of the value it shows. A new worker gets them, too.
+   * Whether the page shows the curvature and a mesh, and the formula of the value it shows. New workers get them, too.
    */
   #wishes = { curvature: false, mesh: false, value: '' };
   /** Files that are being written. */
