@@ -611,8 +611,8 @@ impl fmt::Display for Warning {
                 ]);
                 write!(
                     f,
-                    "The surface {meets}. f has no gradient there, first near {}, and the sheets are sampled up to it: the components \
-                     and the Euler number of the sample are not those of the sheets.",
+                    "The surface {meets}. f has no gradient there, first near {}, and the sheets are sampled up to it: pieces that meet only \
+                     there count as components of their own, and the Euler number is that of the pieces.",
                     place_text(*position, *length)
                 )
             }

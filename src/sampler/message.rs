@@ -30,8 +30,9 @@ impl Sampler {
             ),
             StopReason::NoSurface if self.survey.absence == Absence::Bare => format!(
                 "No surface: f comes to zero, for example near {}, but only on a curve or at a point, beside which it keeps one sign. For a \
-                 surface around it enter a small number on the right, such as x^2 + y^2 = 0.01.",
-                self.place(self.bare_place().unwrap_or_default())
+                 surface around it enter a number on the right side, such as {level}: f = {level} instead of f = 0.",
+                self.place(self.bare_place().unwrap_or_default()),
+                level = significant(self.survey.level),
             ),
             StopReason::NoSurface | StopReason::OneParticle
                 if !self.components.singular().is_empty() && (self.output.particles.is_empty() || self.survey.touches) =>

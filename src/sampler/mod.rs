@@ -417,6 +417,10 @@ impl Sampler {
                 self.survey.absence = if is_bare { Absence::Bare } else { self.survey.absence };
             }
         }
+        if let (Absence::Bare, Some(place)) = (self.survey.absence, self.bare_place()) {
+            let probe = &mut Probe::new(field, &mut self.tools.memory);
+            self.survey.level = probe.level_around(place, &self.bounds);
+        }
     }
 
     /// Looks among singular points for a zero of f on a curve or at an isolated point, if none is

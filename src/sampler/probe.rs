@@ -112,6 +112,20 @@ impl<'a> Probe<'a> {
             && !self.changes_sign_near(point, size)
     }
 
+    /// The value of f around a place, at an eighth of the shortest side of the box from it, to one
+    /// digit: where f has it, there is a surface that shows in the box. 0 if f has no value there.
+    pub(crate) fn level_around(&mut self, place: DVec3, bounds: &Bounds) -> f64 {
+        const SHARE: f64 = 0.125;
+        let distance = SHARE * (bounds.hi() - bounds.lo()).min_element();
+        let ways = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+        let values = ways.map(|way| self.field.value_and_gradient(place + distance * way).0);
+        let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+        values.sort_unstable_by(|a, b| a.abs().total_cmp(&b.abs()));
+        // Along a curve of zeros there are two values of 0.
+        let level = values.get(values.len() / 2).copied().unwrap_or(0.0);
+        format!("{level:.0e}").parse().unwrap_or(level)
+    }
+
     /// Whether f changes its sign near the zero to which Newton's method leads from a point: a
     /// surface that is small compared with `size` looks like a point or a curve.
     fn changes_sign_near(&mut self, mut point: DVec3, size: f64) -> bool {

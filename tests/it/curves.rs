@@ -29,6 +29,33 @@ fn a_curve_or_a_point_is_refused_whatever_the_count() {
 }
 
 #[test]
+fn the_advised_level_has_a_surface_that_shows() {
+    for text in [
+        "(x^2 + y^2 - 1)^2 + z^2",
+        "(x^2 + y^2 - 1)^2 + 40*(z - x)^2",
+        "abs(x) + abs(y)",
+        "-50*x^2 - 80*y^2",
+        "x^2 + y^2 + z^2",
+    ] {
+        let settings = Settings::with_count(500).in_box(Bounds::cube(2.1));
+        let error = sample(formula(text), &settings).expect_err(text).to_string();
+        let (_, rest) = error.split_once("such as ").expect("advice");
+        let (level, _) = rest.split_once(':').expect("a number");
+        let around = sample(formula(&format!("{text} = {level}")), &settings);
+        let around = around.unwrap_or_else(|error| panic!("{text} = {level}: {error}"));
+        let (low, high) = around
+            .particles()
+            .local
+            .iter()
+            .fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
+                (low.min(*p), high.max(*p))
+            });
+        let thinnest = (high - low).min_element();
+        assert!(thinnest > 0.1 * 4.2, "{text} = {level}: {thinnest} wide");
+    }
+}
+
+#[test]
 fn a_curve_beside_a_surface_is_left_out_and_told() {
     let text = "((x^2 + y^2 - 1)^2 + z^2)*(x^2 + y^2 + z^2 - 4) = 0";
     let sample = sample(formula(text), &Settings::with_count(1_000)).expect("a sample");

@@ -170,9 +170,9 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
         (gallery::find("kummer").expect("in the gallery").formula, 2.6, 16),
         // Fifteen more cone points are at infinity.
         (gallery::find("barth-sextic").expect("in the gallery").formula, 1.9, 50),
-        // These have a cusp along a line, and planes that cross.
+        // These have a cusp along a line, and sheets that cross.
         ("y^2 = x^3", 1.0, 1),
-        ("x^2 = y^2", 1.0, 1),
+        ("x^2 = y^2(1 + z^2)", 1.0, 1),
         ("x^2 + y^2 + z^2 = 0.7", 1.0, 0),
         // Its second derivatives vanish at the point, too.
         ("x^4 + y^4 = z^4", 1.0, 1),
@@ -186,7 +186,7 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
         assert!(count < columns.len() / 2 && (count > 0) == (points > 0), "{formula}: {count} marked");
         let distance = match formula.as_str() {
             "x^2 + y^2 = z^2" => |p: Vec3| p.length(),
-            "y^2 = x^3" | "x^2 = y^2" => |p: Vec3| p.truncate().length(),
+            "y^2 = x^3" | "x^2 = y^2(1 + z^2)" => |p: Vec3| p.truncate().length(),
             _ => continue,
         };
         for (i, &p) in columns.local.iter().enumerate() {

@@ -1,9 +1,12 @@
 //! Products whose factors cross: each factor is sampled by itself, up to curves on which four
 //! sheets share their particles.
 
+use crate::cases;
 use core::f64::consts::PI;
 use glam::DVec3;
 use marching_particles::{Bounds, Formula, Method, Sample, Settings, Warning, sample};
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 
 fn sampled(text: &str, half: f64, method: Method) -> Sample {
     let bounds = Some(Bounds::cube(half));
@@ -58,6 +61,39 @@ fn factors_that_cross_are_one_surface_of_the_right_euler_number() {
         assert_eq!(crossings(&sample), creases[0], "{text}: all curves are crossings");
         assert_eq!(report.growth.refined_levels.is_some(), method == Method::Refined, "{text}");
         assert!((figures.area / area - 1.0).abs() < 0.05, "{text}: area {} for {area}", figures.area);
+    }
+}
+
+#[test]
+fn a_difference_of_squares_is_what_its_factors_are() {
+    let is_one = |text: &str, half: f64, euler: i64| {
+        let sample = sampled(text, half, Method::Front);
+        let report = sample.report();
+        let figures = report.measures.quality.as_ref().expect("figures");
+        let found = (report.proof.components, figures.connectivity.euler, crossings(&sample));
+        assert_eq!(found, (1, euler, 1), "{text}");
+    };
+    for text in
+        ["x^2 - y^2 = 0", "-9*y^2 + 4*x^2", "x^2/a^2 = y^2/b^2", "(a*x)^2 - z^2", "x^2*(y^2 + 1)^2 = z^2"]
+    {
+        is_one(text, 1.5, 1);
+    }
+    for seed in cases::seeds(40) {
+        println!("seed {seed}");
+        let mut random = Pcg32::seed_from_u64(seed);
+        let mut direction = || {
+            let mut part = || f64::from(random.next_u32()) / f64::from(u32::MAX) - 0.5;
+            DVec3::new(part(), part(), part()).normalize_or(DVec3::X)
+        };
+        // Two planes through one point in the box, at no small angle.
+        let (n, point) = (direction(), 0.4 * direction());
+        let m = (direction().cross(n).normalize_or(n.any_orthonormal_vector()) + 0.5 * n).normalize_or(n);
+        let plane = |n: DVec3| format!("({:.6}*x + {:.6}*y + {:.6}*z - {:.6})", n.x, n.y, n.z, n.dot(point));
+        let [p, q] = [n, m].map(plane);
+        is_one(&format!("({p} + {q})^2 = ({p} - {q})^2"), 1.5, 1);
+        // A plane through a sphere: the circle has the Euler number 0.
+        let sphere = "(x^2 + y^2 + z^2 - 1)";
+        is_one(&format!("({sphere} - {p})^2 - ({sphere} + {p})^2"), 2.0, 3);
     }
 }
 

@@ -361,6 +361,8 @@ fn paths_and_functions_with_bodies_are_refused_with_what_to_do() {
         "plot3d([cos(u), sin(u), v], u=0..2*Pi, v=0..1)",
         "(2 + cos v) cos u, (2 + cos v) sin u, sin v",
         "x=cos(t) y=sin(t) z=t",
+        "x(t) = t",
+        "y(u, v) = u cos(v)",
     ] {
         let error = Formula::as_written(text, &[]).expect_err(text);
         assert!(error.message.contains("Equations are drawn, not paths"), "{text}: {error:?}");
@@ -369,6 +371,10 @@ fn paths_and_functions_with_bodies_are_refused_with_what_to_do() {
     for text in ["1,5", "x, y, z", "x = y = z", "a, b, 2"] {
         let error = Formula::as_written(text, &[]).expect_err(text);
         assert!(!error.message.contains("not paths"), "{text}: {error:?}");
+    }
+    // Products.
+    for text in ["x(a) = y", "x(a) = 1", "x(y) = a", "x(a + b) = a b", "z(x) = x"] {
+        assert!(Formula::as_written(text, &[]).is_ok(), "{text}");
     }
     for (text, head) in [
         ("float h(vec3 i){ return length(i) - 1.0; }", "float h(vec3 i)"),

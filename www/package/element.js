@@ -37,7 +37,13 @@ const SHEET = `:host { display: block; position: relative; aspect-ratio: 4 / 3; 
 :host([hidden]) { display: none; }
 div { position: absolute; inset: 0; }
 div:focus-visible { outline: 2px solid Highlight; outline-offset: -2px; }
-:host(:not([controls])) div { pointer-events: none; }`;
+:host(:not([controls])) div { pointer-events: none; }
+/* What takes longer than a moment shows how far it is. */
+:host([aria-busy='true']) div::after {
+  content: ''; position: absolute; inset: auto auto 0 0; height: 2px; width: calc(100% * var(--done, 0));
+  background: CanvasText; opacity: 0; animation: shown 0s 0.4s forwards;
+}
+@keyframes shown { to { opacity: 0.4; } }`;
 /** What a screen reader says about a picture with `controls`. */
 const KEYS = 'Arrow keys turn it, plus and minus zoom.';
 
@@ -203,6 +209,7 @@ export class MarchingParticles extends Base {
       if (this.#view) return this.#view.set(state);
       const backend = /** @type {BackendKind | null} */ (this.getAttribute('backend')) ?? undefined;
       this.#view = createView(this.#host, state, { backend });
+      this.ariaBusy = 'true';
       // By default a picture can have the focus; here it may only with `controls`.
       this.#describe();
       for (const name of /** @type {const} */ (['progress', 'report', 'error']))
@@ -211,8 +218,10 @@ export class MarchingParticles extends Base {
     });
   }
 
-  /** @param {string} name @param {unknown} detail */
+  /** @param {string} name @param {any} detail */
   #tell(name, detail) {
+    this.ariaBusy = String(name === 'progress');
+    if (name === 'progress') this.#host.style.setProperty('--done', String(detail.fraction));
     this.dispatchEvent(new CustomEvent(name, { detail }));
   }
 

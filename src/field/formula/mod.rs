@@ -262,6 +262,7 @@ impl Formula {
             }
             wrapped::error(text, &known).unwrap_or_else(|| repair::throughout(text, &known, error))
         })?;
+        wrapped::one_path(text).map_or(Ok(()), Err)?;
         let used = |parameter: &&Parameter| parsed.names.iter().any(|(name, _)| *name == parameter.name);
         let mut parameters: Vec<Parameter> = declared.iter().filter(used).cloned().collect();
         let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.to_string()).collect();

@@ -103,6 +103,24 @@ fn function_with_body(plain: &str) -> Option<Range<usize>> {
 const NO_PATHS: &str = "Equations are drawn, not paths of parameters. Eliminate these, as in `x^2 + y^2 = 1` for \
      (cos(u), sin(u), v), or compute points elsewhere and open them as a file";
 
+/// The error for a coordinate along a path, such as `x(t) = t`, which reads as a product.
+pub(super) fn one_path(text: &str) -> Option<FormulaError> {
+    let plain = plain(text);
+    let is_one = statements(&plain).into_iter().any(|range| is_coordinate(&plain[range]));
+    is_one.then(|| FormulaError::new(ErrorKind::UnexpectedSymbol, 0..text.trim_end().len(), NO_PATHS))
+}
+
+/// Whether a statement gives a coordinate by parameters: `x(t) = t`.
+fn is_coordinate(statement: &str) -> bool {
+    let Some((head, value)) = assignment(statement).map(|at| statement.split_at(at)) else { return false };
+    let call = head.trim().strip_suffix(')').and_then(|call| call.split_once('('));
+    let Some((name, arguments)) = call else { return false };
+    let is_argument = |argument: &str| is_name(argument) && mentions(value, argument);
+    COORDINATES.contains(&name.trim())
+        && arguments.split(',').map(str::trim).all(is_argument)
+        && !COORDINATES.iter().any(|axis| mentions(arguments, axis) || mentions(value, axis))
+}
+
 /// Whether a text gives the points of a surface: `x = cos(u), y = sin(u), z = v`, or at last
 /// `(cos(u), sin(u), v)`.
 fn is_path(plain: &str, all: &[Range<usize>]) -> bool {
@@ -125,6 +143,7 @@ fn is_path(plain: &str, all: &[Range<usize>]) -> bool {
     let bare = parts(plain, value.clone(), &[","]);
     let varies = |part: &Range<usize>| plain[part.clone()].contains(char::is_alphabetic);
     named.len() > 1
+        || all.iter().any(|range| is_coordinate(&plain[range.clone()]))
         || matches!(listed(plain, &value).len(), 2 | 3)
         || bare.len() == 3 && bare.iter().all(varies) && !has_axis()
         || COORDINATES.iter().all(|axis| is_assigned(plain, axis))

@@ -16,7 +16,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::symmetric([1.25, 1.05, 0.85]),
         degree: Some(2),
         genus: Some(0),
-        words: "egg potato pill rugby ball",
+        words: "egg potato pill rugby ball ellipse oval round",
         story: "A sphere stretched by three different factors, the simplest closed surface whose \
                 curvature varies from point to point. At each of its four umbilics the two principal \
                 curvatures agree.",
@@ -31,7 +31,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(1.25),
         degree: Some(2),
         genus: Some(0),
-        words: "ball globe bubble planet",
+        words: "ball globe bubble planet circle round",
         story: "All points at one distance from a centre: the closed surface that holds the most volume \
                 for its area. No lattice of six neighbours covers it, because the defects of valence \
                 must add up to twelve.",
@@ -49,7 +49,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::symmetric([1.65, 1.65, 0.55]),
         degree: Some(4),
         genus: Some(1),
-        words: "donut doughnut ring tyre tire bagel",
+        words: "donut doughnut ring tyre tire bagel circle",
         story: "A circle of radius r carried around an axis at distance R; it is dome-shaped on the \
                 outside and saddle-shaped on the inside. Its Euler number is zero, so that a covering \
                 with six neighbours everywhere is possible.",
@@ -98,7 +98,7 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.1, 1.1, 1.2]),
         genus: Some(0),
-        words: "box cube cushion soap rounded",
+        words: "box cube cushion soap rounded square",
         story: "The sphere's formula with another exponent: 2 gives an ellipsoid, and growing exponents \
                 turn it into a box with rounded edges. The designer and poet Piet Hein made the form \
                 popular in the 1960s.",
@@ -128,7 +128,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(3.0),
         degree: Some(4),
         genus: Some(3),
-        words: "tetrahedron pyramid",
+        words: "tetrahedron pyramid triangle",
         story: "Four balls joined along the six edges of a tetrahedron, which leaves three handles. At t = 0 \
                 they only touch, in six cone points, and below there are four seeds for four components.",
         source: "É. Goursat, Annales scientifiques de l'École normale supérieure 4, 1887",
@@ -193,7 +193,7 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::cube(1.2),
         genus: Some(0),
-        words: "bumpy golf ball waves noise planet asteroid",
+        words: "bumpy golf ball wave waves noise planet asteroid",
         story: "A sphere whose distance from the centre swings between 1 − a and 1 + a. Its curvature grows \
                 with the square of n, so it shows well what adaptive sizes are for.",
         source: "Made for this gallery",

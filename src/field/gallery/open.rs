@@ -14,7 +14,7 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.0, 1.0, 0.8]),
         degree: Some(1),
-        words: "flat sheet floor",
+        words: "flat sheet floor line square",
         story: "Here the front is perfect: level k has exactly 6k particles, and nothing is left for the \
                 relaxation to do. Of all arrangements of equal discs in the plane this lattice is the \
                 densest.",
@@ -28,7 +28,7 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("r", "Radius", 0.8, [0.3, 1.1, 0.01])],
         bounds: Bounds::symmetric([1.2, 1.2, 1.5]),
         degree: Some(2),
-        words: "pipe tube rod can",
+        words: "pipe tube rod can circle column",
         story: "A plane rolled up without stretching, so the hexagons fit everywhere but on the line where \
                 the front meets itself. Its area, 2πr times the height, tests what the report says.",
         source: "C. F. Gauss, Disquisitiones generales circa superficies curvas, 1828",
@@ -41,7 +41,7 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 0.15, [-0.6, 0.8, 0.01])],
         bounds: Bounds::symmetric([1.5, 1.5, 1.2]),
         degree: Some(2),
-        words: "cooling tower hourglass chair",
+        words: "cooling tower hourglass chair cone hyperbola",
         story: "Two straight lines through each of its points make the shape of cooling towers. Lower t to \
                 zero and the waist closes to a cone; below it there are two bowls.",
         source: "C. Wren, Generatio corporis cylindroidis hyperbolici, Philosophical Transactions 4, 1669",
@@ -65,7 +65,7 @@ pub(super) const SURFACES: &[Surface] = &[
         formula: "x sin(k z) = y cos(k z)",
         parameters: &[parameter("k", "Twist", 1.0, [0.3, 2.5, 0.01])],
         bounds: Bounds::symmetric([2.0, 2.0, 3.2]),
-        words: "screw thread spiral staircase auger drill ramp",
+        words: "screw thread spiral staircase auger drill ramp helix",
         story: "The surface of a spiral staircase, swept by a line that turns as it climbs. Among the \
                 surfaces made of straight lines only it and the plane are minimal, as Eugène Catalan \
                 proved in 1842.",

@@ -50,6 +50,8 @@ pub(crate) struct Survey {
     pub(crate) touches: bool,
     /// A place where f vanishes only on a curve or at an isolated point, if one was found.
     pub(crate) bare: Option<DVec3>,
+    /// A value that f has on a surface around such a place, where there is nothing else.
+    pub(crate) level: f64,
     /// Whether points were left out because they lie beyond the limits of the surface.
     is_limited: bool,
     /// Share of the nodes of the grid at which f is defined.

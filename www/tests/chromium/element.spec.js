@@ -62,12 +62,16 @@ test('an attribute that was wrong when the element came into sight opens the pic
   expect(Math.abs((await on(page, 'shown.report.count')) - 400)).toBeLessThan(40);
 });
 
-test('parameters that change before the core is there are those of the picture', { tag: '@all' }, async ({ page }) => {
+test('an element is busy until its particles are there, and takes parameters before that', { tag: '@all' }, async ({
+  page,
+}) => {
   await open(page, 'formula="x^2 + y^2 + z^2 = a" params="a=2" count="300"', 1500);
   await expect.poll(() => on(page, 'shown.view !== null')).toBe(true);
   await on(page, 'shown.params = "a=0.5"');
   expect(await on(page, 'shown.report')).toBeNull();
+  expect(await on(page, 'shown.ariaBusy')).toBe('true');
   await sampled(page);
+  await expect.poll(() => on(page, 'shown.ariaBusy')).toBe('false');
   await expect.poll(() => on(page, 'shown.view.state.parameters')).toEqual({ a: 0.5 });
 });
 

@@ -141,11 +141,16 @@ test('a formula is typed, and mended', async ({ page }) => {
     await expect(page.locator('.unchanging')).toHaveText('No z: a cylinder');
   });
 
-  await test.step('a mistake does not move the gallery', async () => {
+  await test.step('neither a mistake nor a second line moves the gallery', async () => {
     const top = async () => (await page.locator('.gallery').boundingBox())?.y;
-    const before = await top();
+    const height = async () => (await page.locator('#formula').boundingBox())?.height ?? 0;
+    const [before, line] = [await top(), await height()];
     await typeFormula(page, 'hypot(x, y) = 2cos(3 atan2(y, x)) +');
     await expect(page.locator('.fault')).toBeVisible();
+    expect(await top()).toBe(before);
+    await typeFormula(page, `x^2 + y^2 + z^2 ${'+ 0.1*x*y '.repeat(5)}= 1`);
+    await settled(page);
+    expect(await height()).toBeGreaterThan(line);
     expect(await top()).toBe(before);
   });
 
