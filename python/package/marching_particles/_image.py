@@ -2,6 +2,7 @@
 
 import json
 import sys
+from functools import partial
 
 import numpy as np
 
@@ -27,7 +28,7 @@ class Image(Field):
     Args:
         array: Array of three axes, whose value ``array[i, j, k]`` lies at the point to which the
             affine map brings (i, j, k); whole numbers or floats. Or an image of nibabel, SimpleITK
-            or xarray, which knows where it lies.
+            or xarray, which knows where it lies. It is kept to be pickled: do not change it.
         spacing: Distances between voxels along the axes, or one for all of them.
         origin: The point of ``array[0, 0, 0]``.
         affine: Array (3, 4) or (4, 4) that maps (i, j, k, 1) to a point, in place of spacing and
@@ -88,7 +89,8 @@ class Image(Field):
             None if smooth is None else float(smooth),
             inside == "dark",
         )
-        super().__init__(field)
+        how = {"spacing": spacing, "origin": origin, "affine": affine, "iso": iso, "label": label}
+        super().__init__(field, partial(Image, array, **how, smooth=smooth, inside=inside))
         known = json.loads(known)
         self.iso = known["iso"]
         self.smooth = known["smooth"]

@@ -2,6 +2,7 @@
 
 import json
 import os
+from functools import partial
 
 import numpy as np
 
@@ -53,11 +54,13 @@ class TriangleMesh(Field):
             path = os.fspath(mesh)
             with open(path, "rb") as file:
                 content = file.read()
-            made = _core.Field.mesh_file(os.path.basename(path), content, edges, smooth)
+            self._take("mesh_file", os.path.basename(path), content, edges, smooth)
         else:
-            made = _core.Field.mesh(*_arrays(mesh), edges, smooth)
-        field, self._mesh, known = made
-        super().__init__(field)
+            self._take("mesh", *map(np.array, _arrays(mesh)), edges, smooth)
+
+    def _take(self, name, *given):
+        field, self._mesh, known = getattr(_core.Field, name)(*given)
+        super().__init__(field, partial(_taken, name, *given))
         known = json.loads(known)
         self.kind = known["kind"]
         self.repairs = known["repairs"]
@@ -82,6 +85,12 @@ class TriangleMesh(Field):
         """
         points, faces = _arrays(mesh)
         return json.loads(self._mesh.compare(points, faces.astype(np.int32)))
+
+
+def _taken(name, *given):
+    mesh = TriangleMesh.__new__(TriangleMesh)
+    mesh._take(name, *given)
+    return mesh
 
 
 def remesh(mesh, *, edges="auto", smooth=None, **options):
