@@ -25,8 +25,8 @@ export interface Options {
   /** number of particles, met within 3 %: 1 to 4,000,000 */
   count?: number;
   /**
-   * distance between neighbours, two radii; by a formula of x, y, z or a function it depends on the
-   * place. Beside a count it gives the proportions
+   * distance between neighbours, two radii: a length, or a share of the diagonal such as '1%'; by a
+   * formula of x, y, z or a function it depends on the place. Beside a count it gives the proportions
    */
   spacing?: number | string | OfPlace;
   /** half of the distance between neighbours */
@@ -121,8 +121,10 @@ export interface Mesh {
   /** number of particles in no triangle */
   leftOut: number;
 }
-/** Files of the mesh, and of the particles; `ply` can be either. */
-export type Format = 'glb' | '3mf' | 'stl' | 'obj' | 'ply' | 'csv';
+/** Files of the mesh; `ply` can be of the particles, too. */
+export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
+/** Files of the mesh, and of the particles. */
+export type Format = MeshFormat | 'csv' | 'npy' | 'xyz';
 
 export interface Sample {
   /** number of particles */
@@ -162,10 +164,16 @@ export interface Sample {
    */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /**
-   * a file: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply` or `csv`; with `mesh` a
-   * `ply` of the mesh. A file of a formula says what it was made from
+   * a file: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply`, `csv`, `npy` or `xyz`;
+   * with `mesh` a `ply` of the mesh. A file of a formula says what it was made from
    */
   toFile(format: Format, how?: { mesh?: boolean }): Promise<Uint8Array<ArrayBuffer>>;
+  /**
+   * saves what `toFile` gives, in the format that the ending of the path names: in Node as a file,
+   * in a page as a download. What a CSV file of a formula was made from goes into a file beside it,
+   * whose name goes on with `.json`
+   */
+  save(path: string, how?: { mesh?: boolean }): Promise<void>;
   /**
    * the particles on the surface of other parameters, or of another
    * `iso` of an image; they leave

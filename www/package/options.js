@@ -47,13 +47,21 @@ const isPositive = (/** @type {number} */ v) => v > 0;
 const isWhole = (/** @type {number} */ n) => Number.isSafeInteger(n) && n >= 0;
 const A_SIZE = "a length above 0, or a share of the box diagonal such as '1%'";
 
-const A_SPACING = "a length above 0, a formula such as '0.02 + 0.1 hypot(x, y)' or a function (x, y, z) => number";
+const A_SPACING =
+  "a length above 0, a share of the box diagonal such as '1%', a formula such as '0.02 + 0.1 hypot(x, y)' or a " +
+  'function (x, y, z) => number';
 
 /**
  * Whether a value is a function of place, by a formula or of the program.
  * @param {unknown} value @returns {value is string | OfPlace}
  */
 const isFunction = (value) => typeof value === 'string' || typeof value === 'function';
+
+/**
+ * Whether a spacing depends on the place: a text that is no share.
+ * @param {unknown} spacing @returns {spacing is string | OfPlace}
+ */
+const isVarying = (spacing) => isFunction(spacing) && !(typeof spacing === 'string' && spacing.trim().endsWith('%'));
 
 /** @param {unknown} values @returns {SentFunctions['values']} */
 function functionsOf(values) {
@@ -140,7 +148,7 @@ function settingsOf(options) {
     const value = options[name];
     if (value === undefined || (kind === 'flag' && flag(name, value) === false)) continue;
     // A function of place is no setting.
-    if (kind === 'spacing' && isFunction(value)) continue;
+    if (kind === 'spacing' && isVarying(value)) continue;
     given[setting] = name;
     if (kind === 'flag') settings[setting] = values[0];
     else if (kind === 'choice') settings[setting] = choice(name, value, values);
@@ -153,6 +161,7 @@ function settingsOf(options) {
     } else if (kind === 'text')
       settings[setting] = typeof value === 'string' ? value : number(name, value, () => true, 'a number or a formula');
     // The core has radii, half of the distance between neighbours.
+    else if (kind === 'spacing' && typeof value === 'string') settings[setting] = 0.5 * shareOf(name, value);
     else if (kind === 'spacing') settings.radius = 0.5 * number(name, value, isPositive, A_SPACING);
     else if (typeof value === 'string') settings[setting] = shareOf(name, value);
     else if (name === 'radius') settings.radius = number(name, value, isPositive, A_SIZE);
@@ -237,7 +246,7 @@ export function checked(field, options) {
   if (unknown !== undefined)
     throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
   // Of a spacing that depends on the place a count gives the scale.
-  const sizes = isFunction(options.spacing) ? SIZES.filter((name) => name !== 'count') : SIZES;
+  const sizes = isVarying(options.spacing) ? SIZES.filter((name) => name !== 'count') : SIZES;
   const [first, second] = sizes.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
   if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);
   const { beyondPoints, bounds, formula, params, spacing, values = {}, measure = true } = options;
@@ -256,6 +265,6 @@ export function checked(field, options) {
     parameters: { ...(params === undefined ? {} : paramsOf(params)), ...valuesOf(options, kind) },
     ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
   };
-  const functions = { ...(isFunction(spacing) ? { spacing } : {}), values: functionsOf(values) };
+  const functions = { ...(isVarying(spacing) ? { spacing } : {}), values: functionsOf(values) };
   return { request, functions, settings, given, measure: flag('measure', measure), ...checkedCalls(options) };
 }

@@ -1,4 +1,4 @@
-import type { Bounds, Format, Progress, Report } from './index.js';
+import type { Bounds, MeshFormat, Progress, Report } from './index.js';
 
 export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './index.js';
 
@@ -70,7 +70,7 @@ export interface View {
   /** a PNG, in pixels of the picture where no size is given */
   picture(size?: { width?: number; height?: number; transparent?: boolean }): Promise<Blob>;
   /** the mesh of the particles as a file */
-  toFile(format: Exclude<Format, 'csv'>): Promise<Uint8Array<ArrayBuffer>>;
+  toFile(format: MeshFormat): Promise<Uint8Array<ArrayBuffer>>;
   /** the state as the fragment of a link to the page of Marching Particles */
   link(): Promise<string>;
   /** frees the workers, the graphics device and the canvas; what is waited for is rejected by a `DisposedError` */

@@ -1,6 +1,6 @@
 /** The packed package in Node: its examples, what it gives, and what it says of bad input. */
 import { execFileSync } from 'node:child_process';
-import { cpSync, readFileSync, renameSync } from 'node:fs';
+import { cpSync, existsSync, readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test, vi } from 'vitest';
@@ -59,6 +59,30 @@ test('a file of particles and a file of the mesh', async () => {
   expect(await text(ball.toFile('ply', { mesh: true }))).toContain('element face');
   expect((await text(ball.toFile('csv'))).split('\n').length).toBe(ball.count + 2);
   await expect(ball.toFile('csv', { mesh: true })).rejects.toMatchObject({ name: 'InputError' });
+  const [row] = (await text(ball.toFile('xyz'))).split('\n');
+  const first = [...ball.points.slice(0, 3), ...ball.normals.slice(0, 3)];
+  expect(row.split(' ').map((number) => Math.fround(Number(number)))).toEqual(first);
+  expect(await text(ball.toFile('npy'))).toContain(`'<f4', 'fortran_order': False, 'shape': (${ball.count}, 6)`);
+});
+
+test('the ending of a path decides what is saved', async () => {
+  const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 } });
+  const at = (/** @type {string} */ name) => join(there.project, name);
+  for (const name of ['ball.xyz', 'ball.npy', 'ball.csv', 'ball.STL', 'ball.ply']) await ball.save(at(name));
+  expect(new Uint8Array(readFileSync(at('ball.npy')))).toEqual(await ball.toFile('npy'));
+  expect(readFileSync(at('ball.STL')).length).toBe((await ball.toFile('stl')).length);
+  expect(JSON.parse(readFileSync(at('ball.csv.json'), 'utf8')).marching_particles).toMatchObject({
+    formula: SPHERE,
+    digest: ball.digest,
+  });
+  await ball.save(at('mesh.ply'), { mesh: true });
+  expect(readFileSync(at('mesh.ply'), 'latin1')).toContain('element face');
+  await expect(ball.save(at('ball'))).rejects.toThrow('a name with an ending');
+  await expect(ball.save(at('ball.doc'))).rejects.toThrow('one of glb, 3mf, stl, obj, ply, csv, npy, xyz');
+  await expect(ball.save(at('none/ball.ply'))).rejects.toThrow('its folder does not exist');
+  const round = await made.sample((x, y, z) => x * x + y * y + z * z - 1, { count: 300 });
+  await round.save(at('round.csv'));
+  expect(existsSync(at('round.csv.json'))).toBe(false);
 });
 
 describe('an image', () => {
@@ -242,6 +266,9 @@ test('sizes are lengths or shares, and rows of points are taken', async () => {
     ),
   );
   expect(length.count).toBe(share.count);
+  const bounds = /** @type {const} */ ({ min: [-1, -1, -1], max: [1, 1, 1] });
+  const spaced = await made.sample(SPHERE, { spacing: '4%', bounds, params: { a: 0.5 } });
+  expect(spaced.digest).toBe(share.digest);
   const rows = Array.from(
     { length: ROUND.length / 3 },
     (_, i) => /** @type {[number, number, number]} */ (ROUND.slice(3 * i, 3 * i + 3)),
