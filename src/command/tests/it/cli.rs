@@ -152,6 +152,24 @@ fn files_hold_every_particle() {
 }
 
 #[test]
+fn a_formula_or_a_name_needs_no_option() {
+    let digest = |arguments: &[&str]| sample(&[arguments, &["--count", "200"]].concat())["digest"].clone();
+    let formula = "x^2 + 2y^2 + z^2 = a";
+    let given = ["--param", "a=2"];
+    assert_eq!(
+        digest(&[&[formula][..], &given].concat()),
+        digest(&[&["--formula", formula][..], &given].concat())
+    );
+    assert_eq!(digest(&["torus"]), digest(&["--surface", "torus"]));
+    let name_with_formula = ["--surface", "torus", formula];
+    assert_eq!(digest(&name_with_formula), digest(&["--surface", "torus", "--formula", formula]));
+    let message = fails(2, &["sample", "tours"]);
+    assert!(message.contains("there is no surface `tours`: did you mean `torus`?"), "{message}");
+    assert!(fails(2, &["sample", formula, "--formula", "x"]).contains("cannot be used with"));
+    assert!(fails(2, &["sample", formula, "--cuont", "200"]).contains("'--count'"));
+}
+
+#[test]
 fn mesh_files_hold_a_closed_mesh() {
     let files = ["tube.glb", "tube.obj", "tube.stl", "tube.PLY", "tube.3mf"].map(file);
     let mut arguments = vec!["--surface", "torus", "--radius", "1%"];
