@@ -176,7 +176,7 @@ Examples:
   marching-particles sample --points scan.ply --formula \"max(model, abs(z) - 0.1)\" --mesh slice.stl
   marching-particles sample --image scan.nii.gz --iso 300 --count 50000 --mesh bone.stl
   marching-particles sample --image organs.nrrd --label 3 --mesh liver.stl
-  marching-particles sample --mesh-in part.stl --count 20000 --mesh even.stl
+  marching-particles sample --mesh-in part.stl --count 20000 --method refined --mesh even.stl
   marching-particles sample torus --mesh - --format glb --quiet | viewer
   marching-particles sample \"x^4 + y^4 + z^4 = a\" --param a=0.5 --count 5000 --print python
   marching-particles sample \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
@@ -251,9 +251,8 @@ pub(crate) struct SampleArguments {
 
     /// File of the triangle mesh, in the format of its extension: glb (with normals, and generation
     /// levels as colours), 3mf (with its unit), stl, obj or ply (with normals). Closed surfaces
-    /// face outward. May be repeated; existing files are replaced. The mesh is sampled by --method
-    /// refined, whose triangles are better, unless --method, --relax or a file of --like chooses
-    /// another
+    /// face outward. May be repeated; existing files are replaced. --method refined makes better
+    /// triangles
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
@@ -310,8 +309,8 @@ pub(crate) struct SampleArguments {
     pub(crate) json: bool,
 
     /// Print a program that makes these particles instead of sampling them: in Rust, for the
-    /// package for npm (js), for the Python package, or as a command (shell). No file is written;
-    /// --mesh chooses the method as usual. For formulas
+    /// package for npm (js), for the Python package, or as a command (shell). No file is written.
+    /// For formulas
     #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity", "image", "mesh_in"], help_heading = "Output")]
     pub(crate) print: Option<(&'static str, Language)>,
 

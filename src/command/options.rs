@@ -29,9 +29,6 @@ const SIZE_MODE: &str = "size_mode";
 const RADIUS: &str = "radius_share";
 /// The largest slope of the sizes, whatever they follow.
 const GRADING: &str = "grading";
-/// The method, and the steps that only one of them takes.
-const METHOD: &str = "method";
-const RELAX_STEPS: &str = "relax_steps";
 /// The limit is raised with the wanted number.
 const MAX_PARTICLES: &str = "max_particles";
 
@@ -206,13 +203,6 @@ impl SamplingOptions {
                 let option = setting.option();
                 Err(Failure::Usage(format!("--{option} has no effect without {needed}")))
             }
-        }
-    }
-
-    /// Takes the refined method, unless the options say which method places the particles.
-    pub(crate) fn prefer_refined(&mut self) {
-        if ![METHOD, RELAX_STEPS].iter().any(|name| self.values.contains_key(*name)) {
-            self.values.insert(METHOD.to_owned(), "refined".into());
         }
     }
 

@@ -70,9 +70,6 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     }
     let spacing = arguments.spacing_text()?;
     arguments.sampling.check(spacing.is_some())?;
-    if !arguments.mesh.is_empty() || arguments.porosity.is_some() || arguments.surface.mesh_in.is_some() {
-        arguments.sampling.prefer_refined();
-    }
     let arguments = &arguments;
     if let Some((_, language)) = arguments.print {
         return code::print(arguments, spacing, language);

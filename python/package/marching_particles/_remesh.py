@@ -10,9 +10,6 @@ from . import _core
 from ._fields import Field, numbers
 from ._sample import sample
 
-# Settings of the front, which the refined method does without.
-_OF_FRONT = ("relax", "match_tolerance", "gaps")
-
 
 class TriangleMesh(Field):
     """The solid in a triangle mesh, to be given to :func:`sample`, :func:`difference` and the like.
@@ -108,7 +105,7 @@ def remesh(mesh, *, edges="auto", smooth=None, **options):
         edges: See :class:`TriangleMesh`.
         smooth: See :class:`TriangleMesh`.
         options: The arguments of :func:`sample`, such as ``count``, ``spacing`` or ``adaptive``.
-            The method is ``"refined"`` if none is given.
+            ``method="refined"`` makes the triangles more even.
 
     Returns:
         A :class:`Sample`, whose :meth:`Sample.mesh` is the new mesh, and whose ``change`` says how
@@ -121,8 +118,6 @@ def remesh(mesh, *, edges="auto", smooth=None, **options):
         mesh = TriangleMesh(mesh, edges=edges, smooth=smooth)
     elif edges != "auto" or smooth is not None:
         raise TypeError("edges and smooth belong to TriangleMesh: give them to it")
-    if not any(name in options for name in _OF_FRONT):
-        options.setdefault("method", "refined")
     result = sample(mesh, **options)
     result.change = mesh.compare(result.mesh())
     return result
