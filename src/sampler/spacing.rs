@@ -203,12 +203,6 @@ impl From<&Settings> for SpacedSettings {
     }
 }
 
-impl From<Settings> for SpacedSettings {
-    fn from(settings: Settings) -> Self {
-        Self { settings, spacing: None }
-    }
-}
-
 impl From<&SpacedSettings> for SpacedSettings {
     fn from(settings: &SpacedSettings) -> Self {
         settings.clone()
