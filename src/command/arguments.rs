@@ -422,7 +422,7 @@ pub(crate) struct SurfaceArguments {
     /// formula; H for -H..H on each axis; three half-widths; or two corners as six numbers
     /// separated by commas. A named surface keeps its own box [default: fit]
     #[arg(
-        long = "box", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
+        long = "box", alias = "bounds", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
         help_heading = "Surface"
     )]
     pub(crate) bounds: Option<BoxChoice>,

@@ -92,7 +92,12 @@ fn resolved(path: &Path) -> io::Result<PathBuf> {
         Ok(path) => Ok(path),
         Err(_) => {
             let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-            let directory = directory.unwrap_or(Path::new(".")).canonicalize()?;
+            let directory = directory.unwrap_or(Path::new("."));
+            let missing = |_| {
+                let why = format!("there is no folder {}", directory.display());
+                io::Error::new(io::ErrorKind::NotFound, why)
+            };
+            let directory = directory.canonicalize().map_err(missing)?;
             Ok(directory.join(path.file_name().unwrap_or_default()))
         }
     }

@@ -63,7 +63,7 @@ fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Fa
 }
 
 pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
-    read_text(&mut arguments.surface);
+    read_text(&mut arguments.surface)?;
     if let Some(path) = &arguments.like {
         let record = read_record(path, &arguments.surface)?;
         arguments.complete(record);

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 const FITTED: u32 = 9;
 
 pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
-    read_text(&mut arguments.surface);
+    read_text(&mut arguments.surface)?;
     let (sweep, frames) = (arguments.sweep.clone(), arguments.frames);
     let (extension, format) = arguments.format;
     let in_directory = |error| Failure::File { path: arguments.out.clone(), error };

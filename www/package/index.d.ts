@@ -210,6 +210,11 @@ export interface Points {
   points: Numbers;
   normals?: Numbers;
 }
+/** A file of points or of a mesh, whose vertices they are: PLY, OBJ, STL, OFF, PCD, XYZ, PTS or CSV. */
+export interface PointsFile {
+  points: Blob | ArrayBuffer | Uint8Array;
+  name?: string;
+}
 /** x, y and z of each point, one after the other or in rows of three. */
 export type Numbers = Float32Array | Float64Array | Int32Array | number[] | [number, number, number][];
 /** A file of an image: NIfTI, NRRD, NPY, MetaImage, Gaussian cube or TIFF, whichever its content says. */
@@ -260,7 +265,7 @@ export interface MeshSource {
  * and NaN where it has no value, of a point or of many at once; the pieces of such a function;
  * points; a three-dimensional image; or a triangle mesh.
  */
-export type Field = string | OfPlace | Batch | Pieces | Points | ImageFile | ImageArray | MeshSource;
+export type Field = string | OfPlace | Batch | Pieces | Points | PointsFile | ImageFile | ImageArray | MeshSource;
 
 /**
  * Covers the surface f = 0 with evenly spaced particles. Formulas, points, images and meshes are

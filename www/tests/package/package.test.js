@@ -65,6 +65,14 @@ test('a file of particles and a file of the mesh', async () => {
   expect(await text(ball.toFile('npy'))).toContain(`'<f4', 'fortran_order': False, 'shape': (${ball.count}, 6)`);
 });
 
+test('a word that is nearly an option, and a path in place of a formula, are told what to do', async () => {
+  const refused = (/** @type {any} */ field, /** @type {any} */ options) =>
+    made.sample(field, options).catch((error) => String(error));
+  expect(await refused(SPHERE, { cuont: 300 })).toBe('InputError: cuont: there is no such option. Did you mean count?');
+  expect(await refused(SPHERE, { chord_error: 0.1 })).toContain('Did you mean chordError?');
+  expect(await refused('scan.ply', {})).toContain('is given by its bytes, as {points}, {mesh} or {image}');
+});
+
 test('the ending of a path decides what is saved', async () => {
   const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 } });
   const at = (/** @type {string} */ name) => join(there.project, name);
@@ -266,8 +274,8 @@ test('sizes are lengths or shares, and rows of points are taken', async () => {
     ),
   );
   expect(length.count).toBe(share.count);
-  const bounds = /** @type {const} */ ({ min: [-1, -1, -1], max: [1, 1, 1] });
-  const spaced = await made.sample(SPHERE, { spacing: '4%', bounds, params: { a: 0.5 } });
+  const bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
+  const spaced = await made.sample(SPHERE, /** @type {any} */ ({ spacing: '4%', bounds, params: { a: 0.5 } }));
   expect(spaced.digest).toBe(share.digest);
   const rows = Array.from(
     { length: ROUND.length / 3 },
@@ -277,6 +285,12 @@ test('sizes are lengths or shares, and rows of points are taken', async () => {
     [{ points: ROUND }, { points: rows }].map((field) => made.sample(field, { count: 200 })),
   );
   expect(nested.digest).toBe(flat.digest);
+  const text = rows.map((row) => row.join(' ')).join('\n');
+  const files = [new Blob([text]), new TextEncoder().encode(text)];
+  const read = await Promise.all(files.map((points) => made.sample({ points }, { count: 200 })));
+  expect(read.map(({ digest }) => digest)).toEqual([flat.digest, flat.digest]);
+  const given = made.sample(/** @type {any} */ ({ points: files[0], normals: ROUND }), { count: 200 });
+  await expect(given).rejects.toThrow('normals: for arrays of points');
 });
 
 test('a program on the command line of Node', () => {
@@ -534,9 +548,9 @@ describe('a function of the program', () => {
     ],
     ['returned a promise', async () => 1],
     ['returned a promise', { batch: async () => {} }],
-    ['it returned string', () => '1'],
+    ['f(x, y, z) returned string', () => '1'],
     ['returned 2: it is the index of a piece, from 0 to 1', { label: () => 2, pieces: [() => 1, () => 2] }],
-    ['it returned undefined', () => {}],
+    ['f(x, y, z) returned undefined', () => {}],
     ['wrote 1 of', { batch: (/** @type {unknown} */ _, /** @type {Float64Array} */ out) => void out.fill(1, 0, 1) }],
   ];
   test.each(wrong)('that fails is named: %s', async (words, field) => {

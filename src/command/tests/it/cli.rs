@@ -165,6 +165,9 @@ fn a_formula_or_a_name_needs_no_option() {
     assert_eq!(digest(&name_with_formula), digest(&["--surface", "torus", "--formula", formula]));
     let message = fails(2, &["sample", "tours"]);
     assert!(message.contains("there is no surface `tours`: did you mean `torus`?"), "{message}");
+    let scan = file("scan.xyz").display().to_string();
+    std::fs::write(&scan, "0 0 0\n").expect("a writable folder");
+    assert!(fails(2, &["sample", &scan]).contains("is a file: --points, --mesh-in or --image takes it"));
     assert!(fails(2, &["sample", formula, "--formula", "x"]).contains("cannot be used with"));
     assert!(fails(2, &["sample", formula, "--cuont", "200"]).contains("'--count'"));
 }
