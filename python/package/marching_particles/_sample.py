@@ -15,6 +15,7 @@ import numpy as np
 from . import _core
 from ._fields import Field, _parameters, field_of, numbers
 from ._options import settings_of
+from ._picture import png
 
 class SampleWarning(NamedTuple):
     """What the user of a sample should know.
@@ -85,6 +86,10 @@ class Sample:
         self._core = make(progress=progress)
         # The mesh of one that was unpickled.
         self._mesh = None
+
+    def _repr_png_(self):
+        """The picture that notebooks show."""
+        return png(self.points, self.normals, self.radii)
 
     def __getstate__(self):
         make = self._make
