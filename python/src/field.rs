@@ -12,6 +12,7 @@ use marching_particles::{
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Slices of a fit between two checks for Ctrl-C, about a millisecond each.
@@ -119,24 +120,36 @@ impl Field {
         smooth: Option<f64>,
         is_dark_inside: bool,
     ) -> PyResult<(Self, String)> {
-        let raised = |error: ImageError| PyValueError::new_err(error.to_string());
         let voxel_type = VoxelType::named(voxel_type);
         let voxel_type = voxel_type.expect("the package converts what has no type here");
         let voxels = voxels.as_slice()?.to_vec();
         py.detach(|| {
             let image = Image::from_bytes(size, voxel_type, voxels)
                 .and_then(|image| image.with_affine(rows))
-                .map_err(raised)?;
-            let choice = ImageChoice { iso, label, smooth, is_dark_inside };
-            let surface = image.surface(&choice, None).map_err(raised)?;
-            let known = serde_json::json!({
-                "iso": surface.field().iso(),
-                "smooth": surface.smooth(),
-                "noise": image.noise(),
-                "range": image.range(),
-                "notes": surface.notes(),
-            });
-            Ok((Self::new(Arc::new(surface.field().clone()), None), known.to_string()))
+                .map_err(|error| PyValueError::new_err(error.to_string()))?;
+            Self::imaged(&image, &ImageChoice { iso, label, smooth, is_dark_inside })
+        })
+    }
+
+    /// [`Self::image`] of a file, which may name others beside it.
+    #[staticmethod]
+    #[pyo3(signature = (path, iso, label, smooth, is_dark_inside))]
+    fn image_file(
+        py: Python<'_>,
+        path: PathBuf,
+        iso: Option<f64>,
+        label: Option<f64>,
+        smooth: Option<f64>,
+        is_dark_inside: bool,
+    ) -> PyResult<(Self, String)> {
+        py.detach(|| {
+            let content = std::fs::read(&path)?;
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let beside =
+                |name: &str| std::fs::read(path.with_file_name(name)).map_err(|error| error.to_string());
+            let image = Image::read(&name, content, beside)
+                .map_err(|error| PyValueError::new_err(error.to_string()))?;
+            Self::imaged(&image, &ImageChoice { iso, label, smooth, is_dark_inside })
         })
     }
 
@@ -232,6 +245,19 @@ impl Mesh {
 }
 
 impl Field {
+    fn imaged(image: &Image, choice: &ImageChoice) -> PyResult<(Self, String)> {
+        let raised = |error: ImageError| PyValueError::new_err(error.to_string());
+        let surface = image.surface(choice, None).map_err(raised)?;
+        let known = serde_json::json!({
+            "iso": surface.field().iso(),
+            "smooth": surface.smooth(),
+            "noise": image.noise(),
+            "range": image.range(),
+            "notes": surface.notes(),
+        });
+        Ok((Self::new(Arc::new(surface.field().clone()), None), known.to_string()))
+    }
+
     fn meshed(
         mesh: Result<TriangleMesh, MeshError>,
         edges: &str,

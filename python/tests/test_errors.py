@@ -37,6 +37,15 @@ def test_a_misspelt_function_has_a_suggestion():
     assert error.formula[slice(*error.span)] == "hipot" and error.suggestion == "hypot"
 
 
+def test_what_is_a_file_or_an_array_of_points_is_said_where_to_give(tmp_path):
+    path = tmp_path / "scan.xyz"
+    path.write_text("0 0 0\n")
+    with pytest.raises(ValueError, match="is a file: give it to fit_points, TriangleMesh or remesh"):
+        mp.sample(str(path))
+    with pytest.raises(TypeError, match="and not ndarray: fit_points makes a field of points"):
+        mp.sample(np.zeros((9, 3)))
+
+
 def test_an_unknown_parameter_is_named():
     with pytest.raises(mp.FormulaError, match="`b`") as caught:
         mp.sample("x^2 + y^2 + z^2 = a", params={"b": 2})

@@ -1,5 +1,6 @@
 """Three-dimensional images as fields."""
 
+import pickle
 from types import SimpleNamespace
 
 import marching_particles as mp
@@ -83,3 +84,21 @@ def test_labels_and_iso_are_chosen():
 def test_wrong_images_are_refused(make, error, words):
     with pytest.raises(error, match=words):
         make()
+
+
+def test_a_file_is_read_by_its_path(tmp_path):
+    path = tmp_path / "ball.npy"
+    np.save(path, ball())
+    image = mp.Image(path, iso=0, smooth=0)
+    assert repr(image) == "<Image of ball.npy at 0>"
+    again = pickle.loads(pickle.dumps(image))
+    of_array = mp.Image(ball(), iso=0, smooth=0)
+    points = [mp.sample(one, count=300).points for one in (image, again, of_array)]
+    assert np.array_equal(points[0], points[1]) and np.array_equal(points[0], points[2])
+    with pytest.raises(TypeError, match="a file says where its voxels lie"):
+        mp.Image(path, spacing=2)
+    with pytest.raises(FileNotFoundError, match="none.nii"):
+        mp.Image(tmp_path / "none.nii")
+    (tmp_path / "notes.txt").write_text("no image")
+    with pytest.raises(ValueError):
+        mp.Image(tmp_path / "notes.txt")

@@ -405,3 +405,10 @@ def test_an_open_surface_with_f_above_0_inside_faces_outward():
     mesh = trimesh.Trimesh(*sample.mesh()[::2], process=False)
     assert not mesh.is_watertight and mesh.volume > 0
     assert [warning.code for warning in sample.warnings].count("larger_inside") == 1
+
+
+def test_a_spacing_is_a_share_of_the_diagonal_too():
+    share, half = mp.sample("x^2 + y^2 + z^2 = 1", spacing="4%"), mp.sample("x^2 + y^2 + z^2 = 1", radius="2%")
+    assert np.array_equal(share.points, half.points)
+    with pytest.raises(ValueError, match="spacing must be a length, or a share"):
+        mp.sample("x^2 + y^2 + z^2 = 1", spacing="z %")

@@ -43,10 +43,10 @@ the same distance.";
 const AFTER: &str = "\
 Examples:
   marching-particles surfaces
-  marching-particles sample --surface torus --out torus.ply
-  marching-particles sample --surface ellipsoid --count 55748 --json
-  marching-particles sample --surface ellipsoid --adaptive --chord-error 0.01%
-  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
+  marching-particles sample torus --out torus.ply
+  marching-particles sample ellipsoid --count 55748 --json
+  marching-particles sample ellipsoid --adaptive --chord-error 0.01%
+  marching-particles sample \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
 
 /// The particles that the report measures.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -148,7 +148,7 @@ pub(crate) struct Sweep {
 const SAMPLE_LONG: &str = "\
 Sample a surface, write it to files and say how good it is.
 
-Name a surface, or give a formula, a file of points, a triangle mesh or a three-dimensional image. Say how fine: by the radius of the \
+Give a formula, the name of a surface, a file of points, a triangle mesh or a three-dimensional image. Say how fine: by the radius of the \
 particles (neighbours are two radii apart), by the distance between neighbours, or by their number. Without --out and --mesh nothing is written, only measured.";
 
 const SAMPLE_AFTER: &str = "\
@@ -163,23 +163,23 @@ Formulas:
   Every number of an option may be written so: --box pi, --radius sqrt(2)/50, --count 2*10^4.
 
 Examples:
-  marching-particles sample --surface ellipsoid --count 55748 --out points.ply --json
-  marching-particles sample --surface torus --param r=0.25 --radius 1% --out torus.xyz --out torus.npy
-  marching-particles sample --formula \"x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8\"
-  marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 5 --radius 0.05
-  marching-particles sample --surface gyroid --thickness 0.3 --closed --mesh part.stl
-  marching-particles sample --surface gyroid --thickness \"1 + 0.1z\" --closed --porosity 70% --mesh graded.stl
-  marching-particles sample --formula \"x^2 + y^2 + z^2 = 1\" --mesh ball.3mf --scale 25 --unit mm
-  marching-particles sample --surface gyroid --closed --size 40mm --wall 2mm --largest-part --mesh part.3mf
+  marching-particles sample ellipsoid --count 55748 --out points.ply --json
+  marching-particles sample torus --param r=0.25 --radius 1% --out torus.xyz --out torus.npy
+  marching-particles sample \"x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8\"
+  marching-particles sample \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 5 --radius 0.05
+  marching-particles sample gyroid --thickness 0.3 --closed --mesh part.stl
+  marching-particles sample gyroid --thickness \"1 + 0.1z\" --closed --porosity 70% --mesh graded.stl
+  marching-particles sample \"x^2 + y^2 + z^2 = 1\" --mesh ball.3mf --scale 25 --unit mm
+  marching-particles sample gyroid --closed --size 40mm --wall 2mm --largest-part --mesh part.3mf
   marching-particles sample --like part.glb --radius 0.3% --mesh finer.glb
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
   marching-particles sample --points scan.ply --formula \"max(model, abs(z) - 0.1)\" --mesh slice.stl
   marching-particles sample --image scan.nii.gz --iso 300 --count 50000 --mesh bone.stl
   marching-particles sample --image organs.nrrd --label 3 --mesh liver.stl
-  marching-particles sample --mesh-in part.stl --count 20000 --mesh even.stl
-  marching-particles sample --surface torus --mesh - --format glb --quiet | viewer
-  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --count 5000 --print python
-  marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
+  marching-particles sample --mesh-in part.stl --count 20000 --method refined --mesh even.stl
+  marching-particles sample torus --mesh - --format glb --quiet | viewer
+  marching-particles sample \"x^4 + y^4 + z^4 = a\" --param a=0.5 --count 5000 --print python
+  marching-particles sample \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
 Exit codes:
   0  done
@@ -251,9 +251,8 @@ pub(crate) struct SampleArguments {
 
     /// File of the triangle mesh, in the format of its extension: glb (with normals, and generation
     /// levels as colours), 3mf (with its unit), stl, obj or ply (with normals). Closed surfaces
-    /// face outward. May be repeated; existing files are replaced. The mesh is sampled by --method
-    /// refined, whose triangles are better, unless --method, --relax or a file of --like chooses
-    /// another
+    /// face outward. May be repeated; existing files are replaced. --method refined makes better
+    /// triangles
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
@@ -310,8 +309,8 @@ pub(crate) struct SampleArguments {
     pub(crate) json: bool,
 
     /// Print a program that makes these particles instead of sampling them: in Rust, for the
-    /// package for npm (js), for the Python package, or as a command (shell). No file is written;
-    /// --mesh chooses the method as usual. For formulas
+    /// package for npm (js), for the Python package, or as a command (shell). No file is written.
+    /// For formulas
     #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity", "image", "mesh_in"], help_heading = "Output")]
     pub(crate) print: Option<(&'static str, Language)>,
 
@@ -323,6 +322,11 @@ pub(crate) struct SampleArguments {
 /// Arguments that choose the surface.
 #[derive(Debug, Args)]
 pub(crate) struct SurfaceArguments {
+    /// The surface: a formula, as for --formula, or the name of one that `surfaces` lists, as for
+    /// --surface. A formula that begins with a minus sign needs --formula
+    #[arg(value_name = "FORMULA|NAME", conflicts_with_all = ["formula", "image"], help_heading = "Surface")]
+    pub(crate) text: Option<String>,
+
     /// Named surface; `surfaces` lists them [default: the first one]
     #[arg(long, value_name = "ID", help_heading = "Surface")]
     pub(crate) surface: Option<String>,
@@ -418,7 +422,7 @@ pub(crate) struct SurfaceArguments {
     /// formula; H for -H..H on each axis; three half-widths; or two corners as six numbers
     /// separated by commas. A named surface keeps its own box [default: fit]
     #[arg(
-        long = "box", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
+        long = "box", alias = "bounds", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
         help_heading = "Surface"
     )]
     pub(crate) bounds: Option<BoxChoice>,

@@ -28,10 +28,7 @@ const SIZE_MODE: &str = "size_mode";
 const RADIUS: &str = "radius_share";
 /// The largest slope of the sizes, with or without a curvature.
 const GRADING: &str = "grading";
-/// The method, and the number of steps that only the front takes.
-const METHOD: &str = "method";
-const RELAX_STEPS: &str = "relax_steps";
-/// The limit, which is raised with the wanted number.
+/// The limit is raised with the wanted number.
 const MAX_PARTICLES: &str = "max_particles";
 
 /// A length on the command line.
@@ -205,13 +202,6 @@ impl SamplingOptions {
                 let option = setting.option();
                 Err(Failure::Usage(format!("--{option} has no effect without {needed}")))
             }
-        }
-    }
-
-    /// Chooses the refined method, unless an option chooses how particles are placed.
-    pub(crate) fn prefer_refined(&mut self) {
-        if ![METHOD, RELAX_STEPS].iter().any(|name| self.values.contains_key(*name)) {
-            self.values.insert(METHOD.to_owned(), "refined".into());
         }
     }
 

@@ -90,7 +90,13 @@ fn resolved(path: &Path) -> io::Result<PathBuf> {
         Ok(path) => Ok(path),
         Err(_) => {
             let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-            let directory = directory.unwrap_or(Path::new(".")).canonicalize()?;
+            let directory = directory.unwrap_or(Path::new("."));
+            let directory = directory.canonicalize().map_err(|error| match error.kind() {
+                kind @ io::ErrorKind::NotFound => {
+                    io::Error::new(kind, format!("there is no folder {}", directory.display()))
+                }
+                _ => error,
+            })?;
             Ok(directory.join(path.file_name().unwrap_or_default()))
         }
     }

@@ -7,7 +7,7 @@ use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::{OutputFile, STANDARD, record_path};
 use crate::porosity::Wish;
 use crate::spacing::space;
-use crate::surface::{Origin, choose, fit};
+use crate::surface::{Origin, choose, fit, read_text};
 use crate::wall::Wall;
 use crate::{code, summary};
 use indicatif::ProgressBar;
@@ -63,15 +63,13 @@ fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Fa
 }
 
 pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
+    read_text(&mut arguments.surface)?;
     if let Some(path) = &arguments.like {
         let record = read_record(path, &arguments.surface)?;
         arguments.complete(record);
     }
     let spacing = arguments.spacing_text()?;
     arguments.sampling.check(spacing.is_some())?;
-    if !arguments.mesh.is_empty() || arguments.porosity.is_some() || arguments.surface.mesh_in.is_some() {
-        arguments.sampling.prefer_refined();
-    }
     let arguments = &arguments;
     if let Some((_, language)) = arguments.print {
         return code::print(arguments, spacing, language);

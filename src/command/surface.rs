@@ -15,6 +15,7 @@ use marching_particles::session::{
     BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, Session, SolidSettings, Source,
 };
 use marching_particles::{Bounds, Field, MeshField, Parameter, Settings, Thickness, gallery};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The fit to a file of points or a built-in model, if one is requested.
@@ -55,7 +56,35 @@ fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, 
     Ok(fit)
 }
 
-/// What a surface is made from.
+/// Takes the surface that is given without an option for one with a name or for a formula. A word
+/// that is nearly a name is taken for one, since no formula is.
+pub(crate) fn read_text(arguments: &mut SurfaceArguments) -> Result<(), Failure> {
+    /// Letters of the shortest word that is taken for a name with a mistake.
+    const SHORTEST: usize = 4;
+    let Some(text) = arguments.text.take() else { return Ok(()) };
+    if Path::new(&text).is_file() {
+        return Err(Failure::Usage(format!(
+            "{text} is a file: --points, --mesh-in or --image takes it, by what it holds"
+        )));
+    }
+    let is_word = text.len() >= SHORTEST && text.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'-');
+    let is_name = names().any(|name| name == text) || is_word && formula::similar(&text, names()).is_some();
+    let is_chosen = arguments.surface.is_some() || arguments.points.is_some() || arguments.mesh_in.is_some();
+    if is_name && !is_chosen {
+        arguments.surface = Some(text);
+    } else {
+        arguments.formula = Some(text);
+    }
+    Ok(())
+}
+
+/// The names of all surfaces.
+fn names() -> impl Iterator<Item = &'static str> {
+    let surfaces = gallery::SURFACES.iter().map(|surface| surface.id);
+    surfaces.chain(model::MODELS.iter().map(|model| model.id))
+}
+
+/// What a surface is made from that is no formula.
 #[derive(Clone, Debug)]
 pub(crate) enum Origin {
     Formula,
@@ -197,10 +226,8 @@ fn refused_field(arguments: &SurfaceArguments, fault: Fault) -> Failure {
 }
 
 fn unknown_surface(id: &str) -> String {
-    let surfaces = gallery::SURFACES.iter().map(|surface| surface.id);
-    let known = surfaces.chain(model::MODELS.iter().map(|model| model.id));
     let meant: Vec<String> = gallery::by_word(id).map(|surface| format!("`{}`", surface.id)).collect();
-    match formula::similar(id, known) {
+    match formula::similar(id, names()) {
         _ if !meant.is_empty() => format!("there is no surface `{id}`: did you mean {}?", meant.join(" or ")),
         Some(guess) => format!("there is no surface `{id}`: did you mean `{guess}`?"),
         None => format!("there is no surface `{id}`; `marching-particles surfaces` lists them"),

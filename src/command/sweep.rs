@@ -4,7 +4,7 @@ use crate::arguments::{Sweep, SweepArguments};
 use crate::bar::bar;
 use crate::failure::{Failure, LIMIT};
 use crate::output::OutputFile;
-use crate::surface::{choose, fit};
+use crate::surface::{choose, fit, read_text};
 use marching_particles::quality::Measurements;
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Bounds, FollowError, Particles, StopReason, export};
@@ -17,6 +17,7 @@ use std::process::ExitCode;
 const FITTED: u32 = 9;
 
 pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
+    read_text(&mut arguments.surface)?;
     let (sweep, frames) = (arguments.sweep.clone(), arguments.frames);
     let (extension, format) = arguments.format;
     let in_directory = |error| Failure::File { path: arguments.out.clone(), error };

@@ -214,11 +214,11 @@ impl<F: Field> Run<F> {
     ///
     /// If a setting or the box is out of its range, there is no memory for the expected particles,
     /// or a function of the program fails.
-    pub fn start<Kind>(
-        field: impl IntoField<Kind, Field = F>,
-        settings: impl Into<SpacedSettings>,
-    ) -> Result<Self, Error> {
-        let SpacedSettings { settings, spacing } = settings.into();
+    pub fn start<Kind, S>(field: impl IntoField<Kind, Field = F>, settings: &S) -> Result<Self, Error>
+    where
+        SpacedSettings: for<'a> From<&'a S>,
+    {
+        let SpacedSettings { settings, spacing } = SpacedSettings::from(settings);
         settings.validate()?;
         let field = field.into_field();
         let state = RunState::started(&field, &settings, spacing)?;
@@ -246,8 +246,11 @@ impl<F: Field> Run<F> {
     /// # Errors
     ///
     /// The errors of [`Run::start`].
-    pub fn restart(&mut self, settings: impl Into<SpacedSettings>) -> Result<Start, Error> {
-        let SpacedSettings { settings, spacing } = settings.into();
+    pub fn restart<S>(&mut self, settings: &S) -> Result<Start, Error>
+    where
+        SpacedSettings: for<'a> From<&'a S>,
+    {
+        let SpacedSettings { settings, spacing } = SpacedSettings::from(settings);
         self.set_spacing(spacing);
         if let Some(bounds) = settings.bounds.filter(|bounds| *bounds != self.bounds()) {
             self.set_bounds(bounds, None);

@@ -24,8 +24,9 @@ use std::sync::{Arc, OnceLock};
 /// The surface is sampled in the box of the settings, or in one that fits it: around all of a
 /// bounded surface, or a part of an unbounded one. The box of a field without
 /// [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give the
-/// box if it is known. The same field, settings and seed give the same particles to the last bit,
-/// on every platform. For progress, cancelling or slices of work use a [`Run`].
+/// box if it is known. The settings are [`Settings`](crate::Settings) or [`SpacedSettings`]. The
+/// same field, settings and seed give the same particles to the last bit, on every platform. For
+/// progress, cancelling or slices of work use a [`Run`].
 ///
 /// # Errors
 ///
@@ -44,10 +45,10 @@ use std::sync::{Arc, OnceLock};
 /// assert_eq!(sample.mesh().topology.components.len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn sample<Kind>(
-    field: impl IntoField<Kind>,
-    settings: impl Into<SpacedSettings>,
-) -> Result<Sample, Error> {
+pub fn sample<Kind, S>(field: impl IntoField<Kind>, settings: &S) -> Result<Sample, Error>
+where
+    SpacedSettings: for<'a> From<&'a S>,
+{
     let mut run = Run::start(field, settings)?;
     while run.step(u32::MAX).stop_reason.is_none() {}
     run.finish()

@@ -203,6 +203,12 @@ impl From<&Settings> for SpacedSettings {
     }
 }
 
+impl From<&SpacedSettings> for SpacedSettings {
+    fn from(settings: &SpacedSettings) -> Self {
+        settings.clone()
+    }
+}
+
 impl Settings {
     /// Sets the distance between neighbours as a function of position, and returns the settings
     /// with it. With [`Settings::adaptive`] the smaller one of it and the spacing by curvature is

@@ -249,7 +249,7 @@ impl Program<'_> {
                 spacing.extend(smallest.map(|length| format!(".at_least({length:?})")));
                 spacing.extend(largest.map(|length| format!(".at_most({length:?})")));
                 push_chain(&mut text, "let spacing = ", &spacing, ";");
-                push_line(&mut text, "let particles = sample(surface, settings.spaced(spacing))?;");
+                push_line(&mut text, "let particles = sample(surface, &settings.spaced(spacing))?;");
             }
         }
         push_line(&mut text, "println!(\"{} particles\", particles.report().count);");

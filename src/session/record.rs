@@ -1,8 +1,10 @@
-//! The record in a file, from which the particles can be made again, and the request for a mesh
-//! file.
+//! The record in a file, from which the particles can be made again, and the files of particles and
+//! meshes.
 
 use super::{BoxFaces, Session, SolidSettings, Source, SpacingText};
-use crate::export::{self, Bodies, MeshFile, MeshFormat, Placement, Vertices};
+use crate::export::{
+    self, Bodies, Format, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Vertices,
+};
 use crate::field::rbf::Pull;
 use crate::math::Bounds;
 use crate::sampler::{Method, Settings};
@@ -124,6 +126,29 @@ impl Session {
         })
     }
 
+    /// The particles as a file of the format with this extension, with what was measured of them;
+    /// as `json` the record by itself. `json` gives the JSON of the record. None for another
+    /// extension, and for a record that there is not.
+    pub fn particle_file(
+        &self,
+        extension: &str,
+        json: impl FnOnce(&FileRecord) -> String,
+    ) -> Option<Vec<u8>> {
+        let record = self.record_text(None, json);
+        if extension == "json" {
+            return record.document().map(String::into_bytes);
+        }
+        let file = ParticleFile { format: Format::of_extension(extension)?, record };
+        let mut bytes = Vec::new();
+        export::write(&file, self.run.particles(), self.run.measured(), &mut bytes)
+            .expect("memory takes all that is written");
+        Some(bytes)
+    }
+
+    fn record_text(&self, link: Option<String>, json: impl FnOnce(&FileRecord) -> String) -> RecordText {
+        self.record(link).map_or_else(RecordText::default, |made| RecordText::new(&json(&made)))
+    }
+
     /// The mesh as a file, with up to `budget` slices of the work: its bytes once it is complete,
     /// none before. `json` gives the JSON of the record. The answer is empty for an unknown
     /// extension, or if the file would be too large.
@@ -134,9 +159,8 @@ impl Session {
         budget: u32,
     ) -> Option<Option<Vec<u8>>> {
         let Some(format) = MeshFormat::of_extension(&request.format) else { return Some(None) };
-        let record = if request.plain { None } else { self.record(request.link.clone()) };
         let record =
-            record.map_or_else(export::RecordText::default, |made| export::RecordText::new(&json(&made)));
+            if request.plain { RecordText::default() } else { self.record_text(request.link.clone(), json) };
         let FileRequest { placement, vertices, bodies, .. } = *request;
         let wish = MeshFile { format, placement, vertices, bodies, record };
         self.run.mesh_file(&wish, budget).map_or(Some(None), |bytes| bytes.map(Some))

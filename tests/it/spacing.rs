@@ -116,7 +116,7 @@ fn particles_are_as_far_apart_as_a_formula_asks() {
             for (method, least) in [(Method::Front, front), (Method::Refined, refined)] {
                 let settings = settings!(method; ..Settings::default());
                 let spacing = Spacing::parse(text).expect("a formula");
-                let sample = sample(&field, settings.spaced(spacing)).expect("a sample");
+                let sample = sample(&field, &settings.spaced(spacing)).expect("a sample");
                 let fit = fit(&sample, &field, &wish, settings.grading);
                 let says = format!("{surface}, {text}, {method:?}: {} {fit:?}", sample.report().count);
                 println!("{says}");
@@ -149,7 +149,7 @@ fn random_spacings_are_met_on_random_surfaces() {
         let [a, b, c, phase] = [0; 4].map(|_| 4.0 * random(rng) - 2.0);
         let wish = move |p: DVec3| 0.05 + 0.04 * libm::sin(a * p.x + b * p.y + c * p.z + phase);
         for settings in [Settings::default(), Settings::default().refined(), Settings::with_count(2_000)] {
-            let sample = sample(&field, settings.spaced(Spacing::by(wish))).expect("a sample");
+            let sample = sample(&field, &settings.spaced(Spacing::by(wish))).expect("a sample");
             // Of a count the function is the ratio, which the largest slope limits at its scale.
             let radii = &sample.particles().radius;
             let mut scales: Vec<f64> = (0..radii.len())
@@ -181,7 +181,7 @@ fn formula_and_functions_give_the_same_particles_in_any_steps() {
     ];
     for settings in [Settings::default(), Settings::default().refined()] {
         let digest = |spacing: &Spacing, budget: u32| {
-            let mut run = Run::start(&field, settings.spaced(spacing.clone())).expect("a run");
+            let mut run = Run::start(&field, &settings.spaced(spacing.clone())).expect("a run");
             while run.step(budget).stop_reason.is_none() {}
             run.particles().digest()
         };
@@ -190,7 +190,7 @@ fn formula_and_functions_give_the_same_particles_in_any_steps() {
         assert_eq!(digest(&pointwise, 7), whole);
         let text = Spacing::parse("0.1 + 0.05 x").expect("a formula");
         let (a, b) =
-            (sample(&field, settings.spaced(text)), sample(&field, settings.spaced(pointwise.clone())));
+            (sample(&field, &settings.spaced(text)), sample(&field, &settings.spaced(pointwise.clone())));
         let [a, b] = [a, b].map(|sample| sample.expect("a sample").report().count);
         assert!(a.abs_diff(b) <= a / 50, "{a} by a formula, {b} by a function");
     }
@@ -203,7 +203,7 @@ fn a_surface_far_from_the_origin_has_the_same_sizes() {
     let spacing = Spacing::parse("0.1 + 0.08 (x - 1e3)").expect("a formula");
     let wish = |p: DVec3| 0.1 + 0.08 * (p.x - 1e3);
     let settings = Settings::default().in_box(bounds);
-    let sample = sample(&far, settings.spaced(spacing)).expect("a sample");
+    let sample = sample(&far, &settings.spaced(spacing)).expect("a sample");
     let fit = fit(&sample, &far, &wish, 0.2);
     assert!(fit.good >= 0.98 && fit.range > 4.0, "{fit:?}");
 }
@@ -213,7 +213,7 @@ fn with_adaptive_sampling_the_smaller_size_is_met() {
     let field = formula("x^2/4 + y^2 + z^2/0.25 = 1");
     let by_curvature = sample(&field, &Settings::with_chord_error(5e-4)).expect("a sample");
     let spacing = Spacing::parse("if(x > 0, 0.06, 10)").expect("a formula");
-    let both = sample(&field, Settings::with_chord_error(5e-4).spaced(spacing)).expect("a sample");
+    let both = sample(&field, &Settings::with_chord_error(5e-4).spaced(spacing)).expect("a sample");
     let largest = |sample: &Sample, side: f64| {
         let particles = sample.particles();
         let on_side = (0..particles.len()).filter(|&i| side * particles.place(i).x > 0.7);
@@ -230,7 +230,7 @@ fn limits_hold_and_make_a_spacing_of_zero_good() {
     let field = formula(SPHERE);
     let spacing = |text: &str| Spacing::parse(text).expect("a formula");
     let limited = spacing("0.3 z").at_least(0.05).at_most(0.2);
-    let sample = sample(&field, Settings::default().spaced(limited)).expect("a sample");
+    let sample = sample(&field, &Settings::default().spaced(limited)).expect("a sample");
     let sizes = sample.report().sizes;
     assert!((2.0 * sizes.radius_min - 0.05).abs() < 1e-6, "{sizes:?}");
     assert!((2.0 * sizes.radius_max - 0.2).abs() < 0.01, "{sizes:?}");
@@ -238,7 +238,7 @@ fn limits_hold_and_make_a_spacing_of_zero_good() {
         [(0.3, 0.2, "spacing_min"), (0.0, 0.2, "spacing_min"), (0.1, f64::NAN, "spacing_max")]
     {
         let bad = spacing("0.1").at_least(smallest).at_most(largest);
-        match Run::start(&field, Settings::default().spaced(bad)) {
+        match Run::start(&field, &Settings::default().spaced(bad)) {
             Err(Error::Settings(SettingsError::OutOfRange { name: found, .. })) => assert_eq!(found, name),
             other => panic!("{other:?}"),
         }
@@ -250,7 +250,7 @@ fn a_spacing_that_is_no_length_on_the_surface_is_refused_with_its_place() {
     let field = formula(SPHERE);
     let refusal = |text: &str| {
         let spacing = Spacing::parse(text).expect("a formula");
-        match sample(&field, Settings::default().spaced(spacing)) {
+        match sample(&field, &Settings::default().spaced(spacing)) {
             Err(Error::Settings(error @ SettingsError::Spacing { .. })) => error,
             other => panic!("{text}: {:?}", other.map(|sample| sample.report().count)),
         }
@@ -267,7 +267,7 @@ fn a_spacing_that_is_no_length_on_the_surface_is_refused_with_its_place() {
     for text in ["if(hypot(x, y, z) < 0.5, -1, 0.1)", "0.1 + 0.01/max(z, 0)", "0.15/abs(z)"] {
         let spacing = Spacing::parse(text).expect("a formula");
         let sample =
-            sample(&field, Settings::default().spaced(spacing)).unwrap_or_else(|e| panic!("{text}: {e}"));
+            sample(&field, &Settings::default().spaced(spacing)).unwrap_or_else(|e| panic!("{text}: {e}"));
         assert!(sample.report().count > 30, "{text}: {}", sample.report().count);
     }
 }
@@ -275,7 +275,7 @@ fn a_spacing_that_is_no_length_on_the_surface_is_refused_with_its_place() {
 #[test]
 fn a_place_between_the_points_of_the_survey_is_found_at_the_end() {
     let hole = |p: DVec3| if p.distance(DVec3::new(0.6, 0.64, 0.48)) < 0.03 { f64::NAN } else { 0.03 };
-    match sample(formula(SPHERE), Settings::default().spaced(Spacing::by(hole))) {
+    match sample(formula(SPHERE), &Settings::default().spaced(Spacing::by(hole))) {
         Err(Error::Settings(SettingsError::Spacing { value, .. })) => assert!(value.is_nan()),
         other => panic!("{:?}", other.map(|sample| sample.report().count)),
     }
@@ -290,7 +290,7 @@ fn functions_may_fail_and_their_calls_are_limited() {
         s.fill(0.05);
         if seen.fetch_add(points.len() as u64, Ordering::Relaxed) > 8_000 { Err("no more") } else { Ok(()) }
     };
-    let error = |spacing: Spacing| match sample(&field, Settings::default().spaced(spacing)) {
+    let error = |spacing: Spacing| match sample(&field, &Settings::default().spaced(spacing)) {
         Err(Error::Settings(error @ SettingsError::SpacingFunction(_))) => error.to_string(),
         other => panic!("{:?}", other.map(|sample| sample.report().count)),
     };
@@ -307,7 +307,7 @@ fn it_is_said_where_sizes_follow_more_slowly() {
     let field = formula(SPHERE);
     let smoothed = |text: &str| {
         let spacing = Spacing::parse(text).expect("a formula");
-        let run = Run::start(&field, Settings::default().spaced(spacing)).expect("a run");
+        let run = Run::start(&field, &Settings::default().spaced(spacing)).expect("a run");
         run.start_report().warnings.iter().find_map(|warning| match warning {
             Warning::Smoothed { share, ratio, position, .. } => Some((*share, *ratio, *position)),
             _ => None,

@@ -7,14 +7,16 @@
 import { shown } from './checks.js';
 import { DisposedError, errorOf, InputError, WorkerError } from './errors.js';
 import { checked, checkedCalls, paramsOf } from './options.js';
+import { write } from './write.js';
 
 /**
  * @import { Answered, Asked, Heard, Line, Made } from './protocol.js'
  * @import { Mesh, Options, Progress } from './index.js'
  */
 
-/** Formats that hold only meshes. */
+/** Formats that hold only meshes, and those that hold particles. */
 const MESHES = ['glb', '3mf', 'stl', 'obj'];
+const PARTICLES = ['ply', 'csv', 'npy', 'xyz'];
 
 /**
  * @typedef {{resolve: (value: any) => void, reject: (error: unknown) => void, onProgress?: Options['onProgress'],
@@ -182,12 +184,32 @@ class Sample {
    */
   async toFile(format, { mesh = MESHES.includes(format) } = {}) {
     this.#check('toFile');
-    const known = mesh ? [...MESHES, 'ply'] : ['ply', 'csv'];
+    const known = mesh ? [...MESHES, 'ply'] : PARTICLES;
     if (!known.includes(format)) {
       const all = mesh ? known : [...MESHES, ...known];
       throw new InputError(`format: one of ${all.join(', ')}, not ${shown(format)}.`);
     }
-    const { value } = await this.#client.ask((id) => ({ type: 'file', id, of: this.#id, format, mesh: mesh === true }));
+    return this.#file(format, mesh === true);
+  }
+
+  /**
+   * Saves the mesh or the particles in the format that the ending of a path names: in Node as a file, in a page as a
+   * download of this name. Beside a CSV file goes one of the record, where there is one.
+   * @param {string} path @param {{mesh?: boolean}} [how]
+   */
+  async save(path, how) {
+    this.#check('save');
+    const format = /\.([^./\\]+)$/.exec(path)?.[1].toLowerCase();
+    if (format === undefined)
+      throw new InputError(`path: a name with an ending, such as points.ply or part.stl, not ${shown(path)}.`);
+    await write(path, await this.toFile(format, how));
+    const record = format === 'csv' ? await this.#file('json', false) : undefined;
+    if (record) await write(`${path}.json`, record);
+  }
+
+  /** @param {string} format @param {boolean} mesh */
+  async #file(format, mesh) {
+    const { value } = await this.#client.ask((id) => ({ type: 'file', id, of: this.#id, format, mesh }));
     return value.bytes;
   }
 

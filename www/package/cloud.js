@@ -8,7 +8,7 @@ import { Points } from '../src/wasm/points/points.js';
 /** @import { Cloud } from './protocol.js' */
 /** @import { SolvedModel } from '../src/engine/core-types.js' */
 
-/** Points as a PLY file, from which the core fits surfaces. @param {Cloud} cloud */
+/** Points as a PLY file, from which the core fits surfaces. @param {Exclude<Cloud, {file: Blob}>} cloud */
 function ply({ points, normals }) {
   const names = normals ? ['x', 'y', 'z', 'nx', 'ny', 'nz'] : ['x', 'y', 'z'];
   const count = points.length / 3;
@@ -32,7 +32,9 @@ function ply({ points, normals }) {
 export async function fitted(cloud, inSlices) {
   const points = new Points();
   try {
-    const begun = points.file('points.ply', ply(cloud), 0);
+    const [name, bytes] =
+      'file' in cloud ? [cloud.name, new Uint8Array(await cloud.file.arrayBuffer())] : ['points.ply', ply(cloud)];
+    const begun = points.file(name, bytes, 0);
     if (!begun.ok) return begun;
     const last = await inSlices((budget) => {
       const state = points.step(budget);

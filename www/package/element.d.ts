@@ -1,4 +1,4 @@
-import type { Format, Report } from './index.js';
+import type { MeshFormat, Report } from './index.js';
 import type { View } from './view.js';
 
 /**
@@ -29,7 +29,7 @@ export class MarchingParticles extends HTMLElement {
   controls: boolean;
   readonly view: View | null;
   readonly report: Report | null;
-  toFile(format: Exclude<Format, 'csv'>): Promise<Uint8Array<ArrayBuffer>>;
+  toFile(format: MeshFormat): Promise<Uint8Array<ArrayBuffer>>;
 }
 
 declare global {

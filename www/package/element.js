@@ -113,7 +113,7 @@ export class MarchingParticles extends Base {
     return this.#view?.report ?? null;
   }
 
-  /** The mesh as a file. @param {Exclude<import('./index.js').Format, 'csv'>} format */
+  /** The mesh as a file. @param {import('./index.js').MeshFormat} format */
   async toFile(format) {
     if (!this.#view) throw new InputError('toFile(): the element has not come into sight yet.');
     return this.#view.toFile(format);

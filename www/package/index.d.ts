@@ -25,8 +25,8 @@ export interface Options {
   /** number of particles, met within 3 %: 1 to 4,000,000 */
   count?: number;
   /**
-   * distance between neighbours, two radii. A formula of x, y, z or a function makes it depend on the place; with a
-   * count it gives the proportions
+   * distance between neighbours, two radii: a length, or a share of the diagonal such as '1%'. A formula of x, y, z or
+   * a function makes it depend on the place; with a count it gives the proportions
    */
   spacing?: number | string | OfPlace;
   /** half of the distance between neighbours */
@@ -119,8 +119,10 @@ export interface Mesh {
   /** number of particles in no triangle */
   leftOut: number;
 }
-/** Files of the mesh, and of the particles; `ply` can be either. */
-export type Format = 'glb' | '3mf' | 'stl' | 'obj' | 'ply' | 'csv';
+/** Files of the mesh; `ply` can be of the particles, too. */
+export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
+/** Files of the mesh, and of the particles. */
+export type Format = MeshFormat | 'csv' | 'npy' | 'xyz';
 
 export interface Sample {
   /** number of particles */
@@ -159,10 +161,16 @@ export interface Sample {
    */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /**
-   * a file: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply` or `csv`; with `mesh` a `ply` of the mesh.
-   * The file of a formula records how it was made
+   * a file: the mesh as `glb`, `3mf`, `stl` or `obj`, the particles as `ply`, `csv`, `npy` or `xyz`;
+   * with `mesh` a `ply` of the mesh. The file of a formula records how it was made
    */
   toFile(format: Format, how?: { mesh?: boolean }): Promise<Uint8Array<ArrayBuffer>>;
+  /**
+   * saves what `toFile` gives, in the format that the ending of the path names: in Node as a file,
+   * in a page as a download. How a CSV file of a formula was made is recorded in a second file, which has the name of
+   * the first one and `.json`
+   */
+  save(path: string, how?: { mesh?: boolean }): Promise<void>;
   /**
    * the particles on the surface of other parameters, or of another `iso` of an image. They leave this sample, whose
    * columns stay. They are lost if there is no such surface or the signal ends the move
@@ -194,6 +202,11 @@ export interface Pieces {
 export interface Points {
   points: Numbers;
   normals?: Numbers;
+}
+/** A file of points or of a mesh, whose vertices they are: PLY, OBJ, STL, OFF, GLB, PCD, XYZ, PTS or CSV. */
+export interface PointsFile {
+  points: Blob | ArrayBuffer | Uint8Array;
+  name?: string;
 }
 /** x, y and z of each point, one after the other or in rows of three. */
 export type Numbers = Float32Array | Float64Array | Int32Array | number[] | [number, number, number][];
@@ -245,7 +258,7 @@ export interface MeshSource {
  * negative inside and NaN where undefined; the pieces of such a function; points; a three-dimensional image; or a
  * triangle mesh.
  */
-export type Field = string | OfPlace | Batch | Pieces | Points | ImageFile | ImageArray | MeshSource;
+export type Field = string | OfPlace | Batch | Pieces | Points | PointsFile | ImageFile | ImageArray | MeshSource;
 
 /**
  * Covers the surface f = 0 with evenly spaced particles. Formulas, points, images and meshes are sampled in a worker. A

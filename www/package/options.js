@@ -5,12 +5,12 @@
  */
 import { choice, flag, number, shown, vectors } from './checks.js';
 import { InputError } from './errors.js';
-import { imageOf, isImage, valuesOf } from './image.js';
+import { blobOf, imageOf, isImage, valuesOf } from './image.js';
 import { isMesh, meshOf } from './mesh.js';
 
 /**
  * @import { Batch, OfPlace, Options, Pieces } from './index.js'
- * @import { SentField, SentFunctions, Settings } from './protocol.js'
+ * @import { Cloud, SentField, SentFunctions, Settings } from './protocol.js'
  */
 
 /**
@@ -47,13 +47,21 @@ const isPositive = (/** @type {number} */ v) => v > 0;
 const isWhole = (/** @type {number} */ n) => Number.isSafeInteger(n) && n >= 0;
 const A_SIZE = "a length above 0, or a share of the box diagonal such as '1%'";
 
-const A_SPACING = "a length above 0, a formula such as '0.02 + 0.1 hypot(x, y)' or a function (x, y, z) => number";
+const A_SPACING =
+  "a length above 0, a share of the box diagonal such as '1%', a formula such as '0.02 + 0.1 hypot(x, y)' or a " +
+  'function (x, y, z) => number';
 
 /**
  * Whether a value is a function of a point, as a formula or in the program.
  * @param {unknown} value @returns {value is string | OfPlace}
  */
 const isFunction = (value) => typeof value === 'string' || typeof value === 'function';
+
+/**
+ * Whether a spacing depends on the place: a text that is no share.
+ * @param {unknown} spacing @returns {spacing is string | OfPlace}
+ */
+const isVarying = (spacing) => isFunction(spacing) && !(typeof spacing === 'string' && spacing.trim().endsWith('%'));
 
 /** @param {unknown} values @returns {SentFunctions['values']} */
 function functionsOf(values) {
@@ -121,6 +129,25 @@ const KNOWN = [
   'onProgress',
 ];
 
+/** Number of letters to insert, to leave out or to replace between two words. @param {string} a @param {string} b */
+function distance(a, b) {
+  let row = Array.from({ length: b.length + 1 }, (_, k) => k);
+  for (let i = 1; i <= a.length; i += 1) {
+    const next = [i];
+    for (let k = 1; k <= b.length; k += 1)
+      next.push(Math.min(next[k - 1] + 1, row[k] + 1, row[k - 1] + (a[i - 1] === b[k - 1] ? 0 : 1)));
+    row = next;
+  }
+  return row[b.length];
+}
+
+/** Which option was meant, or all of them. @param {string} unknown */
+function meant(unknown) {
+  const plain = unknown.replaceAll(/[_-]/g, '').toLowerCase();
+  const near = KNOWN.find((name) => distance(plain, name.toLowerCase()) <= (plain.length > 4 ? 2 : 1));
+  return near === undefined ? `There are ${KNOWN.join(', ')}.` : `Did you mean ${near}?`;
+}
+
 /** The option for a setting of the core. @param {string} setting */
 export const optionOf = (setting) =>
   Object.keys(SETTINGS).find((name) => name !== 'spacing' && SETTINGS[name].setting === setting) ?? setting;
@@ -140,7 +167,7 @@ function settingsOf(options) {
     const value = options[name];
     if (value === undefined || (kind === 'flag' && flag(name, value) === false)) continue;
     // A function of a point is not a setting.
-    if (kind === 'spacing' && isFunction(value)) continue;
+    if (kind === 'spacing' && isVarying(value)) continue;
     given[setting] = name;
     if (kind === 'flag') settings[setting] = values[0];
     else if (kind === 'choice') settings[setting] = choice(name, value, values);
@@ -153,6 +180,7 @@ function settingsOf(options) {
     } else if (kind === 'text')
       settings[setting] = typeof value === 'string' ? value : number(name, value, () => true, 'a number or a formula');
     // The core has radii, which are half the distance between neighbours.
+    else if (kind === 'spacing' && typeof value === 'string') settings[setting] = 0.5 * shareOf(name, value);
     else if (kind === 'spacing') settings.radius = 0.5 * number(name, value, isPositive, A_SPACING);
     else if (typeof value === 'string') settings[setting] = shareOf(name, value);
     else if (name === 'radius') settings.radius = number(name, value, isPositive, A_SIZE);
@@ -169,8 +197,16 @@ export function checkedCalls({ signal, onProgress }) {
   return { signal, onProgress };
 }
 
-/** @param {{points: unknown, normals?: unknown}} given */
-function cloudOf({ points, normals }) {
+/**
+ * The arrays of points, or their file.
+ * @param {{points: unknown, normals?: unknown, name?: unknown}} given @returns {Cloud}
+ */
+function cloudOf({ points, normals, name }) {
+  if (points instanceof Blob || points instanceof ArrayBuffer || points instanceof Uint8Array) {
+    if (normals !== undefined) throw new InputError('normals: for arrays of points. A file has its own.');
+    const ownName = points instanceof Blob && 'name' in points ? String(points.name) : 'points';
+    return { name: name === undefined ? ownName : String(name), file: /** @type {Blob} */ (blobOf(points)) };
+  }
   const cloud = {
     points: vectors('points', points),
     normals: normals === undefined ? null : vectors('normals', normals),
@@ -182,9 +218,11 @@ function cloudOf({ points, normals }) {
   return cloud;
 }
 
+/** What a file is called, and no formula. */
+const A_FILE = /^[^=()]*\.(ply|obj|stl|off|pcd|xyz|pts|csv|npy|nii|nii\.gz|hdr|nrrd|nhdr|mha|mhd|cube|tiff?)$/i;
 const FIELD =
   "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)}, {label, pieces}, " +
-  '{points, normals}, {image} of a file or an array of voxels, or {mesh} of a file or {points, faces}';
+  '{points} of a file or arrays, {image} of a file or an array of voxels, or {mesh} of a file or {points, faces}';
 
 /** @param {{label?: unknown, pieces?: unknown}} given @returns {Pieces} */
 function piecesOf({ label, pieces }) {
@@ -199,7 +237,11 @@ function piecesOf({ label, pieces }) {
 
 /** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program' | 'given'>} */
 function fieldOf(field) {
-  if (typeof field === 'string') return { formula: field };
+  if (typeof field === 'string') {
+    if (A_FILE.test(field))
+      throw new InputError(`field: a file such as ${field} is given by its bytes, as {points}, {mesh} or {image}.`);
+    return { formula: field };
+  }
   if (typeof field === 'function')
     return { program: /** @type {(x: number, y: number, z: number) => number} */ (field) };
   const given = /** @type {Partial<Batch & Pieces> & {points?: unknown, normals?: unknown}} */ (field ?? {});
@@ -234,10 +276,9 @@ export function checked(field, options) {
   if (typeof options !== 'object' || options === null)
     throw new InputError(`options: an object, not ${shown(options)}.`);
   const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
-  if (unknown !== undefined)
-    throw new InputError(`${unknown}: there is no such option. There are ${KNOWN.join(', ')}.`);
+  if (unknown !== undefined) throw new InputError(`${unknown}: there is no such option. ${meant(unknown)}`);
   // If the spacing depends on the point, a count sets its scale.
-  const sizes = isFunction(options.spacing) ? SIZES.filter((name) => name !== 'count') : SIZES;
+  const sizes = isVarying(options.spacing) ? SIZES.filter((name) => name !== 'count') : SIZES;
   const [first, second] = sizes.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
   if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);
   const { beyondPoints, bounds, formula, params, spacing, values = {}, measure = true } = options;
@@ -256,6 +297,6 @@ export function checked(field, options) {
     parameters: { ...(params === undefined ? {} : paramsOf(params)), ...valuesOf(options, kind) },
     ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
   };
-  const functions = { ...(isFunction(spacing) ? { spacing } : {}), values: functionsOf(values) };
+  const functions = { ...(isVarying(spacing) ? { spacing } : {}), values: functionsOf(values) };
   return { request, functions, settings, given, measure: flag('measure', measure), ...checkedCalls(options) };
 }

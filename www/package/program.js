@@ -89,7 +89,7 @@ function ofPoint(f) {
       const value = f(xyz[at], xyz[at + 1], xyz[at + 2]);
       if (typeof value !== 'number') {
         refusePromise(value);
-        throw new Misuse(`it returned ${typeof value} in place of a number`);
+        throw new Misuse(`f(x, y, z) returned ${typeof value} in place of a number`);
       }
       out[i] = value;
     }

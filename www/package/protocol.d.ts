@@ -56,11 +56,8 @@ export interface SentFunctions {
 export type SentVoxels = { name: string; type: string; size: number[]; rows: number[]; voxels: Uint8Array };
 /** The coordinates of vertices and the vertex indices of faces, three each. */
 export type SentFaces = { name: string; points: Float64Array; faces: Uint32Array };
-/** Points, and their normals if known, three coordinates each. */
-export interface Cloud {
-  points: Float64Array;
-  normals: Float64Array | null;
-}
+/** Points, and their normals if they are known, three numbers each; or a file of them. */
+export type Cloud = { points: Float64Array; normals: Float64Array | null } | { name: string; file: Blob };
 
 export interface Made {
   /** number of particles */

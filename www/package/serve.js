@@ -7,7 +7,6 @@
 import { nextBudget } from '../src/engine/bundle/budget.js';
 import { hasSimd } from '../src/engine/bundle/load.js';
 import { openGiven } from '../src/engine/files/open.js';
-import { csv, ply } from '../src/engine/share/exports.js';
 import loadCore, { Core } from '../src/wasm/core/core.js';
 import loadPoints from '../src/wasm/points/points.js';
 import { fitted } from './cloud.js';
@@ -79,38 +78,6 @@ const NEEDED = {
   box_faces: () => 'without closed: true',
   radius_law: ({ equal }) => `without law: ${equal ? "'chord_error'" : "'max_curvature' or 'sum_of_curvatures'"}`,
 };
-
-/**
- * The particles as a file, as on the page.
- * @param {Core} core @param {string} format
- */
-async function particlesFile(core, format) {
-  const [valence, nearest, residual] = [core.valence(), core.nearest(), core.residual()];
-  const [patch, particle, periodic] = [core.patch(), core.particle(), core.periodic()];
-  const some = (/** @type {{length: number}} */ column) => (column.length > 0 ? column : undefined);
-  const names = core.value_names();
-  const columns = /** @type {any} */ ({
-    count: core.radii(0).length,
-    exact: core.exact_positions(0),
-    positions: core.positions(0),
-    normals: core.normals(0),
-    radii: core.radii(0),
-    levels: core.levels(0),
-    parents: core.parents(0),
-    slots: core.slots(0),
-    valence: some(valence),
-    nearest: some(nearest),
-    residual: some(residual),
-    patch: some(patch),
-    particle: some(particle),
-    periodic: some(periodic),
-    values: Object.fromEntries(names.map((name) => [name, core.added_value(name)])),
-  });
-  const { columns: known } = core.describe();
-  const all = [...known, ...names.map((name) => ({ name, kind: /** @type {const} */ ('float') }))];
-  const file = format === 'csv' ? csv(columns, all) : ply(columns, all, core.record());
-  return new Uint8Array(await file.arrayBuffer());
-}
 
 /**
  * Answers the messages of one client.
@@ -350,8 +317,8 @@ export function serve({ post, load }) {
   async function joined(message, core) {
     const of = { id: message.id, core };
     if (message.type === 'file' && !message.mesh) {
-      const bytes = await particlesFile(core, message.format);
-      return [{ bytes }, [bytes.buffer]];
+      const bytes = core.particle_file(message.format);
+      return [{ bytes }, bytes ? [bytes.buffer] : []];
     }
     const about = await inSlices(of, (budget) => core.join(budget));
     if (message.type === 'mesh') {

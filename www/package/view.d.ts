@@ -1,4 +1,4 @@
-import type { Bounds, Format, Progress, Report } from './index.js';
+import type { Bounds, MeshFormat, Progress, Report } from './index.js';
 
 export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './index.js';
 
@@ -70,7 +70,7 @@ export interface View {
   /** a PNG; by default with the picture's own size in pixels */
   picture(size?: { width?: number; height?: number; transparent?: boolean }): Promise<Blob>;
   /** the mesh of the particles as a file */
-  toFile(format: Exclude<Format, 'csv'>): Promise<Uint8Array<ArrayBuffer>>;
+  toFile(format: MeshFormat): Promise<Uint8Array<ArrayBuffer>>;
   /** the state as the fragment of a link to the page */
   link(): Promise<string>;
   /** frees the workers, the graphics device and the canvas; rejects pending promises with a `DisposedError` */

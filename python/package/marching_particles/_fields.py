@@ -6,6 +6,7 @@ import inspect
 import json
 import os
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 
@@ -36,14 +37,29 @@ class Field:
     """A field that can be sampled, or combined with another one: from :func:`field`,
     :func:`union` and the like.
 
+    It does not change, so that copies are the field itself. It is pickled as what it was made of,
+    and made anew from it: its functions must be such as can be pickled, which those are that a
+    module defines by ``def``.
+
     Attributes:
         bounds: The box of its surface, ``((x0, y0, z0), (x1, y1, z1))``, where that is known; else
             None.
     """
 
-    def __init__(self, field):
+    def __init__(self, field, made):
         self._field = field
+        # What makes the field again.
+        self._made = made
         self.bounds = field.bounds
+
+    def __reduce__(self):
+        return self._made, ()
+
+    def __copy__(self):
+        return self
+
+    def __deepcopy__(self, memo):
+        return self
 
 
 class Model(Field):
@@ -56,8 +72,8 @@ class Model(Field):
         warnings: Sentences on what was done to the points, or may be wrong with them.
     """
 
-    def __init__(self, field, report):
-        super().__init__(field)
+    def __init__(self, field, report, made):
+        super().__init__(field, made)
         self.report = report
         self.warnings = report["warnings"]
 
@@ -97,16 +113,21 @@ def fit_points(points, normals=None, *, centres=200, beyond_points="cut"):
         path = os.fspath(points)
         with open(path, "rb") as file:
             content = file.read()
-        field, report = _core.Field.file(os.path.basename(path), content, centres, is_cut)
-        return Model(field, json.loads(report))
+        return _fitted("file", os.path.basename(path), content, centres, is_cut)
     if not isinstance(points, np.ndarray):
         points, normals = _of_mesh(points, normals)
     points = numbers("points", points, (None, 3), "an array of n points, of the shape (n, 3)")
     if normals is not None:
         what = "an array of a normal for each point, of the shape of points"
         normals = numbers("normals", normals, points.shape, what)
-    field, report = _core.Field.points(points, normals, centres, is_cut)
-    return Model(field, json.loads(report))
+    return _fitted("points", points, normals, centres, is_cut)
+
+
+def _fitted(name, *given):
+    field, report = getattr(_core.Field, name)(*given)
+    # The arrays are the caller's, who may change them.
+    kept = [value.copy() if isinstance(value, np.ndarray) else value for value in given]
+    return Model(field, json.loads(report), partial(_fitted, name, *kept))
 
 
 def _of_mesh(mesh, normals):
@@ -163,6 +184,8 @@ def field_of(field, params=None, gradient=None, name="field"):
     if isinstance(field, str):
         if gradient is not None:
             raise TypeError("gradient belongs to a function: a formula has its own")
+        if os.path.isfile(field):
+            raise ValueError(f"{field} is a file: give it to fit_points, TriangleMesh or remesh")
         return _core.Field.formula(field, _parameters(params))
     if params is not None:
         raise TypeError("params belongs to a formula: give a function its values by a closure")
@@ -174,9 +197,10 @@ def field_of(field, params=None, gradient=None, name="field"):
         _check_parameters(field, name)
         slope = None if gradient is None else _checked(gradient, "gradient", (3,))
         return _core.Field.function(_checked(field, name, ()), slope)
+    hint = ": fit_points makes a field of points" if isinstance(field, np.ndarray) else ""
     raise TypeError(
         f"{name} must be a formula (str), a function, a Model or another Field, and not "
-        f"{type(field).__name__}"
+        f"{type(field).__name__}{hint}"
     )
 
 
@@ -218,7 +242,11 @@ def field(field, *, params=None, gradient=None):
     Returns:
         A :class:`Field`.
     """
-    return Field(field_of(field, params, gradient))
+    return _field(field, dict(params) if isinstance(params, Mapping) else params, gradient)
+
+
+def _field(given, params, gradient):
+    return Field(field_of(given, params, gradient), partial(_field, given, params, gradient))
 
 
 def piecewise(label, pieces):
@@ -275,7 +303,7 @@ def piecewise(label, pieces):
         return found.astype(np.int64)
 
     functions = [_checked(piece, f"pieces[{k}]", ()) for k, piece in enumerate(pieces)]
-    return Field(_core.Field.piecewise(labels, functions))
+    return Field(_core.Field.piecewise(labels, functions), partial(piecewise, label, pieces))
 
 
 def union(*solids):
@@ -317,7 +345,7 @@ def _joined(name, solids):
     joined = fields[0]
     for field in fields[1:]:
         joined = getattr(joined, name)(field)
-    return Field(joined)
+    return Field(joined, partial(_joined, name, tuple(solids)))
 
 
 def difference(a, b):
@@ -325,7 +353,7 @@ def difference(a, b):
 
     See :func:`union`. Its box is that of ``a``.
     """
-    return Field(field_of(a, name="a").difference(field_of(b, name="b")))
+    return Field(field_of(a, name="a").difference(field_of(b, name="b")), partial(difference, a, b))
 
 
 def smooth_union(a, b, width):
@@ -341,7 +369,8 @@ def smooth_union(a, b, width):
     width = float(numbers("width", width, (), "a number"))
     if width < 0:
         raise ValueError(f"width is {width}, but must not be negative")
-    return Field(field_of(a, name="a").smooth_union(field_of(b, name="b"), width))
+    joined = field_of(a, name="a").smooth_union(field_of(b, name="b"), width)
+    return Field(joined, partial(smooth_union, a, b, width))
 
 
 def offset(a, distance):
@@ -351,4 +380,5 @@ def offset(a, distance):
     Raises:
         ValueError: If the distance is not finite.
     """
-    return Field(field_of(a, name="a").offset(float(numbers("distance", distance, (), "a number"))))
+    distance = float(numbers("distance", distance, (), "a number"))
+    return Field(field_of(a, name="a").offset(distance), partial(offset, a, distance))

@@ -1,7 +1,9 @@
 """Three-dimensional images as fields."""
 
 import json
+import os
 import sys
+from functools import partial
 
 import numpy as np
 
@@ -27,7 +29,9 @@ class Image(Field):
     Args:
         array: Array of three axes, whose value ``array[i, j, k]`` lies at the point to which the
             affine map brings (i, j, k); whole numbers or floats. Or an image of nibabel, SimpleITK
-            or xarray, which knows where it lies.
+            or xarray, which knows where it lies; or the path of a file: NIfTI, NRRD, NumPy,
+            MetaImage, Gaussian cube or TIFF. To be pickled the array is kept, so do not change it,
+            and of a file its path.
         spacing: Distances between voxels along the axes, or one for all of them.
         origin: The point of ``array[0, 0, 0]``.
         affine: Array (3, 4) or (4, 4) that maps (i, j, k, 1) to a point, in place of spacing and
@@ -51,7 +55,8 @@ class Image(Field):
     Raises:
         TypeError: If the array is none of numbers.
         ValueError: If the array has no three axes, is constant or not finite, or has no surface of
-            this value.
+            this value; or if a file is damaged, or none of these.
+        OSError: If the file cannot be read.
     """
 
     def __init__(
@@ -70,35 +75,44 @@ class Image(Field):
             raise ValueError(f'inside is "bright" or "dark", and not {inside!r}')
         if iso is not None and label is not None:
             raise TypeError("give an iso value or a label, and not both")
-        voxels, own = _voxels(array)
-        rows = _rows(spacing, origin, affine, own)
-        if voxels.flags.f_contiguous:
-            flat, size = voxels.ravel(order="F"), voxels.shape
-        else:
-            # The last axis changes fastest, so it becomes the core's first one.
-            flat, size = np.ascontiguousarray(voxels).ravel(), voxels.shape[::-1]
-            rows = rows[:, [2, 1, 0, 3]]
-        field, known = _core.Field.image(
-            flat.view(np.uint8),
-            voxels.dtype.name,
-            list(size),
-            rows.tolist(),
+        choice = (
             None if iso is None else float(iso),
             None if label is None else float(label),
             None if smooth is None else float(smooth),
             inside == "dark",
         )
-        super().__init__(field)
+        if isinstance(array, (str, os.PathLike)):
+            if any(value is not None for value in (spacing, origin, affine)):
+                raise TypeError("a file says where its voxels lie: leave out spacing, origin and affine")
+            array = os.path.abspath(array)
+            with open(array, "rb"):  # A file that is missing is named.
+                field, known = _core.Field.image_file(array, *choice)
+            what = os.path.basename(array)
+        else:
+            voxels, own = _voxels(array)
+            rows = _rows(spacing, origin, affine, own)
+            if voxels.flags.f_contiguous:
+                flat, size = voxels.ravel(order="F"), voxels.shape
+            else:
+                # The last axis changes fastest, and so it is the first one of the core.
+                flat, size = np.ascontiguousarray(voxels).ravel(), voxels.shape[::-1]
+                rows = rows[:, [2, 1, 0, 3]]
+            field, known = _core.Field.image(
+                flat.view(np.uint8), voxels.dtype.name, list(size), rows.tolist(), *choice
+            )
+            what = f"{' × '.join(map(str, voxels.shape))} voxels"
+        how = {"spacing": spacing, "origin": origin, "affine": affine, "iso": iso, "label": label}
+        super().__init__(field, partial(Image, array, **how, smooth=smooth, inside=inside))
         known = json.loads(known)
         self.iso = known["iso"]
         self.smooth = known["smooth"]
         self.noise = known["noise"]
         self.range = tuple(known["range"])
         self.notes = known["notes"]
-        self._shape = voxels.shape
+        self._what = what
 
     def __repr__(self):
-        return f"<Image of {' × '.join(map(str, self._shape))} voxels at {self.iso:g}>"
+        return f"<Image of {self._what} at {self.iso:g}>"
 
 
 def _voxels(image):

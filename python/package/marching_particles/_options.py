@@ -32,7 +32,11 @@ def settings_of(options):
     # The argument that gave each setting.
     given = {}
     if "spacing" in options:
-        settings["radius"] = _length("spacing", options.pop("spacing")) / 2
+        spacing = options.pop("spacing")
+        if isinstance(spacing, str):
+            settings["radius_share"] = _share("spacing", spacing) / 2
+        else:
+            settings["radius"] = _length("spacing", spacing) / 2
         given["radius_share"] = "spacing"
     for setting in SETTINGS:
         name, argument = setting["name"], setting["argument"]

@@ -2,15 +2,13 @@
 
 import json
 import os
+from functools import partial
 
 import numpy as np
 
 from . import _core
 from ._fields import Field, numbers
 from ._sample import sample
-
-# Settings of the front, which the refined method does not use.
-_OF_FRONT = ("relax", "match_tolerance", "gaps")
 
 
 class TriangleMesh(Field):
@@ -53,11 +51,13 @@ class TriangleMesh(Field):
             path = os.fspath(mesh)
             with open(path, "rb") as file:
                 content = file.read()
-            made = _core.Field.mesh_file(os.path.basename(path), content, edges, smooth)
+            self._take("mesh_file", os.path.basename(path), content, edges, smooth)
         else:
-            made = _core.Field.mesh(*_arrays(mesh), edges, smooth)
-        field, self._mesh, known = made
-        super().__init__(field)
+            self._take("mesh", *map(np.array, _arrays(mesh)), edges, smooth)
+
+    def _take(self, name, *given):
+        field, self._mesh, known = getattr(_core.Field, name)(*given)
+        super().__init__(field, partial(_taken, name, *given))
         known = json.loads(known)
         self.kind = known["kind"]
         self.repairs = known["repairs"]
@@ -84,6 +84,12 @@ class TriangleMesh(Field):
         return json.loads(self._mesh.compare(points, faces.astype(np.int32)))
 
 
+def _taken(name, *given):
+    mesh = TriangleMesh.__new__(TriangleMesh)
+    mesh._take(name, *given)
+    return mesh
+
+
 def remesh(mesh, *, edges="auto", smooth=None, **options):
     """Samples the surface of a triangle mesh anew, with even triangles.
 
@@ -99,7 +105,7 @@ def remesh(mesh, *, edges="auto", smooth=None, **options):
         edges: See :class:`TriangleMesh`.
         smooth: See :class:`TriangleMesh`.
         options: The arguments of :func:`sample`, such as ``count``, ``spacing`` or ``adaptive``.
-            The method is ``"refined"`` if none is given.
+            ``method="refined"`` makes the triangles more even.
 
     Returns:
         A :class:`Sample`, whose :meth:`Sample.mesh` is the new mesh, and whose ``change`` says how
@@ -112,8 +118,6 @@ def remesh(mesh, *, edges="auto", smooth=None, **options):
         mesh = TriangleMesh(mesh, edges=edges, smooth=smooth)
     elif edges != "auto" or smooth is not None:
         raise TypeError("edges and smooth belong to TriangleMesh: give them to it")
-    if not any(name in options for name in _OF_FRONT):
-        options.setdefault("method", "refined")
     result = sample(mesh, **options)
     result.change = mesh.compare(result.mesh())
     return result

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
+import pickle
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +15,7 @@ import numpy as np
 from . import _core
 from ._fields import Field, _parameters, field_of, numbers
 from ._options import settings_of
+from ._picture import png
 
 class SampleWarning(NamedTuple):
     """What the user of a sample should know.
@@ -47,19 +50,83 @@ class Mesh(NamedTuple):
     rows: np.ndarray
 
 
+# What of a sample is pickled beside its mesh.
+_KEPT = (
+    "points",
+    "normals",
+    "radii",
+    "levels",
+    "values",
+    "faces",
+    "report",
+    "warnings",
+    "mesh_warnings",
+    "bounds",
+    "change",
+)
+
+
 class Sample:
     """The particles of a run.
 
     The arrays have a row for each particle. One on a sharp edge, or on a seam that prolongs one, has
     a row on each side, with the normal of that side; :meth:`mesh` has it once. They are made when
     first asked for, and kept.
+
+    A sample is pickled with all its arrays, its mesh and its report. To :meth:`save` one that was
+    unpickled, it is sampled anew, which takes a field that can be pickled: see :class:`Field`.
     """
 
     #: The distance of the mesh from the one given to :func:`remesh`, a dict; else None.
     change = None
 
-    def __init__(self, core):
-        self._core = core
+    def __init__(self, make, progress):
+        # What samples the field; of a sample that was unpickled as bytes, or why it is not known.
+        self._make = make
+        self._core = make(progress=progress)
+        # The mesh of one that was unpickled.
+        self._mesh = None
+
+    def _repr_png_(self):
+        """The picture that notebooks show."""
+        return png(self.points, self.normals, self.radii)
+
+    def __getstate__(self):
+        make = self._make
+        if callable(make):
+            try:
+                make = pickle.dumps(make)
+            except Exception as error:  # Functions that cannot be pickled raise errors of many types.
+                make = str(error)
+        return {**{name: getattr(self, name) for name in _KEPT}, "_make": make, "_mesh": self.mesh()}
+
+    def __setstate__(self, state):
+        self.__dict__.update(state, _core=None)
+
+    def __copy__(self):
+        return self._copied(lambda value: value)
+
+    def __deepcopy__(self, memo):
+        return self._copied(lambda value: copy.deepcopy(value, memo))
+
+    def _copied(self, copied):
+        other = Sample.__new__(Sample)
+        # The core's sample and what makes it do not change.
+        own = {name: self.__dict__[name] for name in ("_core", "_make")}
+        others = {name: value for name, value in self.__dict__.items() if name not in own}
+        other.__dict__.update(own, **{name: copied(value) for name, value in others.items()})
+        return other
+
+    def _sampled(self):
+        """The core's sample, which one that was unpickled makes anew."""
+        if self._core is None:
+            if isinstance(self._make, str):
+                raise TypeError(
+                    "this sample was pickled without its field, so that it cannot be saved: "
+                    f"{self._make}. Save it before it is pickled"
+                )
+            self._core = pickle.loads(self._make)()
+        return self._core
 
     def __len__(self):
         """Number of particles."""
@@ -111,20 +178,20 @@ class Sample:
         """What may be wrong with the particles, a list of :class:`SampleWarning`."""
         return [SampleWarning(*warning) for warning in self._core.warnings()]
 
-    @property
+    @cached_property
     def mesh_warnings(self):
         """What may be wrong with the mesh, a list of :class:`SampleWarning`: holes, particles in no
         triangle."""
         return [SampleWarning(*warning) for warning in self._core.mesh_warnings()]
 
-    @property
+    @cached_property
     def bounds(self):
         """The box that was sampled, ``((x0, y0, z0), (x1, y1, z1))``."""
         return self._core.bounds()
 
     def mesh(self):
         """The :class:`Mesh` with one vertex for each particle."""
-        return Mesh(*self._core.mesh())
+        return Mesh(*(self._core.mesh() if self._mesh is None else map(np.copy, self._mesh)))
 
     def save(self, path, *, mesh=False):
         """Writes a file: the mesh as ``.glb``, ``.3mf``, ``.stl`` or ``.obj``, the particles as
@@ -141,7 +208,7 @@ class Sample:
             ValueError: If the extension is none of these.
             OSError: If the file cannot be written.
         """
-        self._core.save(os.fspath(path), bool(mesh))
+        self._sampled().save(os.fspath(path), bool(mesh))
 
     def to_trimesh(self):
         """The mesh as a ``trimesh.Trimesh``, with vertex normals."""
@@ -217,9 +284,9 @@ def sample(
             :func:`fit_points`; or a :class:`Field` from :func:`union` and the like. f < 0 inside.
             What a function raises comes through unchanged.
         count: Number of particles, met to within 3 %; 1 to 4,000,000.
-        spacing: Distance between neighbours, twice the radius: a number; a formula of x, y, z and
-            ``params`` such as ``"0.02 + 0.1 hypot(x, y)"``; or a function of points, as for
-            ``field``. It must be above 0 on the surface. Sizes change gradually along the surface;
+        spacing: Distance between neighbours, twice the radius: a length; a share of the diagonal of
+            the box such as ``"1%"``; a formula of x, y, z and ``params`` such as
+            ``"0.02 + 0.1 hypot(x, y)"``; or a function of points, as for ``field``. It must be above 0 on the surface. Sizes change gradually along the surface;
             a warning says where that is less than a formula or function asks. With ``count`` these
             give the ratio of the distances, with ``adaptive`` the smaller size is taken.
         radius: Repulsion radius, half the distance between neighbours: a length, or a share of the
@@ -273,7 +340,8 @@ def sample(
         TypeError: If an argument is of a wrong type.
         MemoryError: If there is not enough memory for the particles.
     """
-    is_varying = isinstance(spacing, str) or callable(spacing) or isinstance(spacing, Field)
+    is_formula = isinstance(spacing, str) and not spacing.rstrip().endswith("%")
+    is_varying = is_formula or callable(spacing) or isinstance(spacing, Field)
     if is_varying and radius is not None:
         raise ValueError("spacing and radius exclude each other: give one of them")
     options = settings_of(
@@ -309,22 +377,40 @@ def sample(
             fault = f"along {axis} the lower is not below the upper"
             raise ValueError(f"bounds must be {what}: {fault}")
         bounds = tuple(bounds[0].tolist()), tuple(bounds[1].tolist())
+    solid = {"closed": closed, "periodic": periodic, "thickness": thickness}
+    return Sample(
+        partial(
+            _run,
+            field,
+            dict(params) if isinstance(params, Mapping) else params,
+            gradient,
+            options=options,
+            of_formula=next((name for name, value in solid.items() if value), None),
+            spacing=spacing if is_varying else None,
+            bounds=bounds,
+            values=dict(values) if isinstance(values, Mapping) else values,
+            measure=bool(measure),
+        ),
+        progress,
+    )
+
+
+def _run(
+    field, params, gradient, *, options, of_formula, spacing, bounds, values, measure, progress=None
+):
+    """The core's sample of what :func:`sample` has checked. A solid is ``of_formula``, an argument."""
     core_field = field_of(field, params, gradient)
-    if not core_field.is_formula:
-        solid = {"closed": closed, "periodic": periodic, "thickness": thickness}
-        given = [name for name, value in solid.items() if value]
-        if given:
-            raise ValueError(f"{given[0]} is for a formula by itself")
-    core = _core.sample(
+    if of_formula is not None and not core_field.is_formula:
+        raise ValueError(f"{of_formula} is for a formula by itself")
+    return _core.sample(
         core_field,
         options,
-        spacing=_spacing(spacing, core_field, params) if is_varying else None,
+        spacing=None if spacing is None else _spacing(spacing, core_field, params),
         bounds=bounds,
         values=_columns(values, params),
-        measure=bool(measure),
+        measure=measure,
         progress=progress,
     )
-    return Sample(core)
 
 
 def _spacing(spacing, core_field, params):

@@ -98,7 +98,7 @@ fn programs() -> Vec<(Program, &'static str)> {
 
             let sphere = Formula::parse("x^2 + y^2 + z^2 = 1")?;
             let spacing = Spacing::parse("0.02 + 0.1 hypot(x, y)")?;
-            let particles = sample(sphere, Settings::default().spaced(spacing))?;
+            let particles = sample(sphere, &Settings::default().spaced(spacing))?;
         },
         program! { particles:
             use marching_particles::{Formula, Settings, Value, sample};

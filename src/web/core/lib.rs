@@ -584,7 +584,6 @@ impl Core {
     /// The mesh as a file with its record, from a `FileRequest`, doing up to `budget` slices of the
     /// work: its bytes once complete, undefined before; null for an unknown extension or if it is
     /// too large.
-    #[expect(clippy::missing_panics_doc, reason = "a record is an object without cycles")]
     #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer> | null | undefined")]
     pub fn mesh_file(
         &mut self,
@@ -592,14 +591,18 @@ impl Core {
         budget: u32,
     ) -> JsValue {
         let Ok(request) = read::<FileRequest>(request, FaultKind::Request) else { return JsValue::NULL };
-        let json = |record: &FileRecord| {
-            js_sys::JSON::stringify(&to_js(record)).expect("a record is an object without cycles").into()
-        };
-        match self.session.mesh_file(&request, json, budget) {
+        match self.session.mesh_file(&request, json_of, budget) {
             Some(Some(bytes)) => js_sys::Uint8Array::from(&bytes[..]).into(),
             Some(None) => JsValue::NULL,
             None => JsValue::UNDEFINED,
         }
+    }
+
+    /// The particles as a file with this extension, with what was measured of them and the record;
+    /// as `json` the record by itself. None for another extension or without a record.
+    #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer> | undefined")]
+    pub fn particle_file(&self, extension: &str) -> Option<js_sys::Uint8Array> {
+        self.session.particle_file(extension, json_of).map(|bytes| js_sys::Uint8Array::from(&bytes[..]))
     }
 
     /// The record for the files of the particles: `FileRecord`; null before the first run.
@@ -657,6 +660,11 @@ impl Core {
         let count = self.session.run.rows().min(column.len());
         bytemuck::cast_slice(&column[from.min(count)..count]).to_vec()
     }
+}
+
+/// The JSON of a record.
+fn json_of(record: &FileRecord) -> String {
+    js_sys::JSON::stringify(&to_js(record)).expect("a record is an object without cycles").into()
 }
 
 /// A field from a function that writes f at points.

@@ -1,6 +1,6 @@
 /** The packed package in Node: its examples, what it gives, and what it says of bad input. */
 import { execFileSync } from 'node:child_process';
-import { cpSync, readFileSync, renameSync } from 'node:fs';
+import { cpSync, existsSync, readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test, vi } from 'vitest';
@@ -59,6 +59,38 @@ test('a file of particles and a file of the mesh', async () => {
   expect(await text(ball.toFile('ply', { mesh: true }))).toContain('element face');
   expect((await text(ball.toFile('csv'))).split('\n').length).toBe(ball.count + 2);
   await expect(ball.toFile('csv', { mesh: true })).rejects.toMatchObject({ name: 'InputError' });
+  const [row] = (await text(ball.toFile('xyz'))).split('\n');
+  const first = [...ball.points.slice(0, 3), ...ball.normals.slice(0, 3)];
+  expect(row.split(' ').map((number) => Math.fround(Number(number)))).toEqual(first);
+  expect(await text(ball.toFile('npy'))).toContain(`'<f4', 'fortran_order': False, 'shape': (${ball.count}, 6)`);
+});
+
+test('a word that is nearly an option, and a path in place of a formula, are told what to do', async () => {
+  const refused = (/** @type {any} */ field, /** @type {any} */ options) =>
+    made.sample(field, options).catch((error) => String(error));
+  expect(await refused(SPHERE, { cuont: 300 })).toBe('InputError: cuont: there is no such option. Did you mean count?');
+  expect(await refused(SPHERE, { chord_error: 0.1 })).toContain('Did you mean chordError?');
+  expect(await refused('scan.ply', {})).toContain('is given by its bytes, as {points}, {mesh} or {image}');
+});
+
+test('the ending of a path decides what is saved', async () => {
+  const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 } });
+  const at = (/** @type {string} */ name) => join(there.project, name);
+  for (const name of ['ball.xyz', 'ball.npy', 'ball.csv', 'ball.STL', 'ball.ply']) await ball.save(at(name));
+  expect(new Uint8Array(readFileSync(at('ball.npy')))).toEqual(await ball.toFile('npy'));
+  expect(readFileSync(at('ball.STL')).length).toBe((await ball.toFile('stl')).length);
+  expect(JSON.parse(readFileSync(at('ball.csv.json'), 'utf8')).marching_particles).toMatchObject({
+    formula: SPHERE,
+    digest: ball.digest,
+  });
+  await ball.save(at('mesh.ply'), { mesh: true });
+  expect(readFileSync(at('mesh.ply'), 'latin1')).toContain('element face');
+  await expect(ball.save(at('ball'))).rejects.toThrow('a name with an ending');
+  await expect(ball.save(at('ball.doc'))).rejects.toThrow('one of glb, 3mf, stl, obj, ply, csv, npy, xyz');
+  await expect(ball.save(at('none/ball.ply'))).rejects.toThrow('its folder does not exist');
+  const round = await made.sample((x, y, z) => x * x + y * y + z * z - 1, { count: 300 });
+  await round.save(at('round.csv'));
+  expect(existsSync(at('round.csv.json'))).toBe(false);
 });
 
 describe('an image', () => {
@@ -242,6 +274,9 @@ test('sizes are lengths or shares, and rows of points are taken', async () => {
     ),
   );
   expect(length.count).toBe(share.count);
+  const bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
+  const spaced = await made.sample(SPHERE, /** @type {any} */ ({ spacing: '4%', bounds, params: { a: 0.5 } }));
+  expect(spaced.digest).toBe(share.digest);
   const rows = Array.from(
     { length: ROUND.length / 3 },
     (_, i) => /** @type {[number, number, number]} */ (ROUND.slice(3 * i, 3 * i + 3)),
@@ -250,6 +285,12 @@ test('sizes are lengths or shares, and rows of points are taken', async () => {
     [{ points: ROUND }, { points: rows }].map((field) => made.sample(field, { count: 200 })),
   );
   expect(nested.digest).toBe(flat.digest);
+  const text = rows.map((row) => row.join(' ')).join('\n');
+  const files = [new Blob([text]), new TextEncoder().encode(text)];
+  const read = await Promise.all(files.map((points) => made.sample({ points }, { count: 200 })));
+  expect(read.map(({ digest }) => digest)).toEqual([flat.digest, flat.digest]);
+  const given = made.sample(/** @type {any} */ ({ points: files[0], normals: ROUND }), { count: 200 });
+  await expect(given).rejects.toThrow('normals: for arrays of points');
 });
 
 test('a program on the command line of Node', () => {
@@ -507,9 +548,9 @@ describe('a function of the program', () => {
     ],
     ['returned a promise', async () => 1],
     ['returned a promise', { batch: async () => {} }],
-    ['it returned string', () => '1'],
+    ['f(x, y, z) returned string', () => '1'],
     ['returned 2: it is the index of a piece, from 0 to 1', { label: () => 2, pieces: [() => 1, () => 2] }],
-    ['it returned undefined', () => {}],
+    ['f(x, y, z) returned undefined', () => {}],
     ['wrote 1 of', { batch: (/** @type {unknown} */ _, /** @type {Float64Array} */ out) => void out.fill(1, 0, 1) }],
   ];
   test.each(wrong)('that fails is named: %s', async (words, field) => {

@@ -152,6 +152,27 @@ fn files_hold_every_particle() {
 }
 
 #[test]
+fn a_formula_or_a_name_needs_no_option() {
+    let digest = |arguments: &[&str]| sample(&[arguments, &["--count", "200"]].concat())["digest"].clone();
+    let formula = "x^2 + 2y^2 + z^2 = a";
+    let given = ["--param", "a=2"];
+    assert_eq!(
+        digest(&[&[formula][..], &given].concat()),
+        digest(&[&["--formula", formula][..], &given].concat())
+    );
+    assert_eq!(digest(&["torus"]), digest(&["--surface", "torus"]));
+    let name_with_formula = ["--surface", "torus", formula];
+    assert_eq!(digest(&name_with_formula), digest(&["--surface", "torus", "--formula", formula]));
+    let message = fails(2, &["sample", "tours"]);
+    assert!(message.contains("there is no surface `tours`: did you mean `torus`?"), "{message}");
+    let scan = file("scan.xyz").display().to_string();
+    std::fs::write(&scan, "0 0 0\n").expect("a writable folder");
+    assert!(fails(2, &["sample", &scan]).contains("is a file: --points, --mesh-in or --image takes it"));
+    assert!(fails(2, &["sample", formula, "--formula", "x"]).contains("cannot be used with"));
+    assert!(fails(2, &["sample", formula, "--cuont", "200"]).contains("'--count'"));
+}
+
+#[test]
 fn mesh_files_hold_a_closed_mesh() {
     let files = ["tube.glb", "tube.obj", "tube.stl", "tube.PLY", "tube.3mf"].map(file);
     let mut arguments = vec!["--surface", "torus", "--radius", "1%"];
@@ -159,7 +180,7 @@ fn mesh_files_hold_a_closed_mesh() {
         arguments.extend(["--mesh", path.to_str().expect("a plain path")]);
     }
     let run = sample(&arguments);
-    assert!(run["refined_levels"].is_u64(), "{}", run["refined_levels"]);
+    assert_eq!(run["digest"], sample(&arguments[..4])["digest"], "the particles depend on what is written");
     let mesh = &run["mesh"];
     assert_eq!(mesh["triangles"].as_u64(), run["count"].as_u64().map(|count| 2 * count));
     for (key, expected) in [("components", 1), ("euler", 0), ("borders", 0), ("holes", 0), ("left_out", 0)] {
@@ -176,10 +197,6 @@ fn mesh_files_hold_a_closed_mesh() {
     let triangles = mesh["triangles"].as_u64().expect("a count") as usize;
     assert_eq!(stl.len(), 84 + 50 * triangles);
     assert_eq!(String::from_utf8_lossy(&obj).matches("\nf ").count(), triangles);
-
-    let path = file("front.obj");
-    let front = ["--surface", "torus", "--method", "front", "--mesh", path.to_str().expect("a plain path")];
-    assert!(sample(&front)["refined_levels"].is_null());
 
     let text = run_text(&["--surface", "schwarz-p", "--count", "3000", "--mesh"], "cut.obj");
     assert!(text.contains("1 component, Euler number -32, 24 border loops"), "{text}");
@@ -519,7 +536,10 @@ fn a_run_that_meets_the_limit_prints_what_it_has_and_says_how_many_would_fit() {
 #[test]
 fn a_file_that_cannot_be_written_is_named_before_anything_is_sampled() {
     let message = fails(1, &["sample", "--count", "4000000", "--out", "/nonexistent/points.ply"]);
-    assert!(message.contains("/nonexistent/points.ply"), "{message}");
+    assert!(
+        message.contains("/nonexistent/points.ply could not be written: there is no folder"),
+        "{message}"
+    );
 }
 
 #[test]

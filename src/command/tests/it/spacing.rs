@@ -67,7 +67,7 @@ fn programs_have_the_spacing() {
     };
     let rust = printed("rust");
     assert!(rust.contains(r#"let spacing = Spacing::parse("b = 2; 0.1 b + 0.05 z")?;"#), "{rust}");
-    assert!(rust.contains("sample(surface, settings.spaced(spacing))?"), "{rust}");
+    assert!(rust.contains("sample(surface, &settings.spaced(spacing))?"), "{rust}");
     for (language, words) in
         [("shell", "--spacing '0.1 b + 0.05 z'"), ("python", "spacing=\"0.1 b + 0.05 z\"")]
     {

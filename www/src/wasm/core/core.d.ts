@@ -185,7 +185,12 @@ export class Core {
      */
     particle(): Uint32Array<ArrayBuffer>;
     /**
-     * Patch of each particle, as the number of its branch; empty without creases.
+     * The particles as a file with this extension, with what was measured of them and the record;
+     * as `json` the record by itself. None for another extension or without a record.
+     */
+    particle_file(extension: string): Uint8Array<ArrayBuffer> | undefined;
+    /**
+     * Patch of each particle, by the number of its branch; empty without creases.
      */
     patch(): Uint32Array<ArrayBuffer>;
     /**

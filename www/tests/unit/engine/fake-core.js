@@ -330,6 +330,7 @@ export function fakeCore({
     code: () => /** @type {const} */ ({ ok: true, text: 'code' }),
     limit_memory() {},
     mesh_file: () => null,
+    particle_file: () => undefined,
     record: () => null,
     free() {},
     [Symbol.dispose]() {},
