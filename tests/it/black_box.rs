@@ -2,7 +2,7 @@
 
 use crate::black_box_table::{Function, Solid, block, more_solids, solids};
 use crate::cases;
-use glam::{DMat3, DVec3, dvec3};
+use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
 use marching_particles::{
     Bounds, FnField, Method, PiecewiseFn, Sample, Settings, sample, smooth_union, union,
 };
@@ -158,6 +158,38 @@ fn bodies_that_touch_along_a_part_of_a_face_are_one() {
         let (topology, report) = (&sample.mesh().topology, sample.report());
         assert!(topology.is_closed(), "seed {seed}: {:?}", report.warnings);
         assert_eq!((topology.euler(), report.proof.creases), (2, Some(12 + 2)), "seed {seed}");
+    }
+}
+
+#[test]
+fn pieces_that_bend_between_points_of_their_edges_end_at_corners() {
+    type Figure = Box<dyn Fn(DVec2) -> f64 + Send + Sync>;
+    for seed in cases::seeds(4) {
+        let mut random = Pcg32::seed_from_u64(seed);
+        let mut between =
+            |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let way = dvec3(between(-1.0, 1.0), between(-1.0, 1.0), 1.0).normalize_or_zero();
+        let turn = DMat3::from_axis_angle(way, between(0.0, 1.2));
+        let (half, radius) = (dvec2(between(0.3, 0.6), between(0.2, 0.4)), between(0.15, 0.3));
+        let rounded = move |q: DVec2| (q.abs() - half).max(DVec2::ZERO).length() - radius;
+        let (teeth, height) = (between(5.0, 10.0).round(), between(0.04, 0.1));
+        let gear = move |q: DVec2| {
+            let tooth = (0.25 * libm::sin(teeth * libm::atan2(q.y, q.x))).clamp(-height, height);
+            (q.length() - 0.8 - tooth).max(0.25 - q.length())
+        };
+        let figures: [(&str, i64, Figure); 2] =
+            [("rounded", 2, Box::new(rounded)), ("gear", 0, Box::new(gear))];
+        for (name, euler, figure) in figures {
+            let f = move |p: DVec3| {
+                let p = turn * p;
+                figure(p.truncate()).max(p.z.abs() - 0.3)
+            };
+            let settings = Settings::with_count(6_000).in_box(Bounds::cube(1.8));
+            let sample = sample(f, &settings).unwrap_or_else(|error| panic!("{name}, seed {seed}: {error}"));
+            let (topology, report) = (&sample.mesh().topology, sample.report());
+            assert!(topology.is_closed(), "{name}, seed {seed}: {:?}", report.warnings);
+            assert_eq!(topology.euler(), euler, "{name}, seed {seed}");
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! The evaluator of a field whose edges were found. Within its region a piece is f; beyond its
 //! edges it is extrapolated.
 
-use super::sampled::{STENCIL, Taylor, jet_across, stencil};
+use super::sampled::{STENCIL, Taylor, jet, stencil};
+use super::search::ALIKE;
 use super::table::{EdgeTable, Site};
 use crate::field::{Evaluator, Field, Frame, Jet, Pieces};
 use crate::math::{Bounds, Sym3};
@@ -15,14 +16,16 @@ const MOVES: u32 = 12;
 /// Two pieces whose distances from f differ by no more than this share of the size of the box count
 /// as equally near to it.
 const SAME: f64 = 3e-10;
+/// Depths within the region, in margins, that are tried in turn where the walls are not exact.
+const DEEPER: [f64; 2] = [4.0, 16.0];
 
 /// The way to evaluate a piece at a place.
-#[derive(Clone, Copy)]
 enum Plan {
     /// Evaluates f: the place is within the region of the piece.
     Whole,
-    /// Extrapolates from this place within the region.
-    Around(DVec3),
+    /// Extrapolates from this place within the region. There f is like the first rather than the
+    /// second vertex of each pair; the first pair is the nearest.
+    Around(DVec3, Vec<[u32; 2]>),
     /// Extrapolates from this vertex.
     Vertex(u32),
 }
@@ -33,8 +36,8 @@ struct Wall {
     beyond: u32,
     /// Distance of the site from the place that is asked for.
     near: f64,
-    /// The vertex of the piece beside the site.
-    end: u32,
+    /// The vertices of the piece and of the one beyond, beside the site.
+    ends: [u32; 2],
     /// Where the site is.
     position: DVec3,
     /// The piece, and the one beyond.
@@ -53,7 +56,7 @@ impl Wall {
         Some(Self {
             beyond: other.label,
             near: site.position.distance(p),
-            end: own.end,
+            ends: [own.end, other.end],
             position: site.position,
             own: table.vertices[own.end as usize],
             other: table.vertices[other.end as usize],
@@ -125,12 +128,12 @@ impl EdgeTable {
         bounding.map(|k| (k, depths[k].0, depths[k].1)).collect()
     }
 
-    /// Plans how to evaluate a piece at a place: moves the place into the region of the piece, and
-    /// extrapolates from there.
-    fn plan(&self, label: u32, q: DVec3) -> Plan {
+    /// Plans how to evaluate a piece at a place: moves the place by a margin into the region of the
+    /// piece, and extrapolates from there.
+    fn plan(&self, label: u32, q: DVec3, margin: f64) -> Plan {
         let walls = self.walls(label, q);
         let Some(nearest) = walls.iter().min_by(|a, b| a.near.total_cmp(&b.near)) else { return Plan::Whole };
-        let beside = Plan::Vertex(nearest.end);
+        let beside = Plan::Vertex(nearest.ends[0]);
         let normal = nearest.own.slope(q).1.normalize_or_zero();
         let mut p = q;
         // The walls that have moved the place, the last one first.
@@ -138,18 +141,21 @@ impl EdgeTable {
         for _ in 0..MOVES {
             let bounding = Self::bounding(&walls, p);
             let Some(&(worst, depth, _)) = bounding.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
-            if depth >= self.margin {
+            if depth >= margin {
                 let moved = p.distance(q);
                 return match moved {
                     0.0 if depth >= self.clear => Plan::Whole,
-                    _ if moved <= FAR * self.margin => Plan::Around(p),
+                    _ if moved <= FAR * self.margin => {
+                        let others = walls.iter().map(|wall| wall.ends).filter(|&ends| ends != nearest.ends);
+                        Plan::Around(p, core::iter::once(nearest.ends).chain(others).collect())
+                    }
                     _ => beside,
                 };
             }
             passed.retain(|&k| k != worst);
             passed.insert(0, worst);
             let lacking = passed.iter().filter_map(|k| bounding.iter().find(|(wall, ..)| wall == k));
-            let step = step_within(normal, lacking.map(|&(_, depth, way)| (1.01 * self.margin - depth, way)));
+            let step = step_within(normal, lacking.map(|&(_, depth, way)| (1.01 * margin - depth, way)));
             // Written so that NaN fails.
             let is_near = (p + step).distance(q) <= self.cell;
             if !is_near {
@@ -158,6 +164,29 @@ impl EdgeTable {
             p += step;
         }
         beside
+    }
+
+    /// The polynomial of a piece around a place by the values of its [stencil] there; none if an
+    /// edge passes between these, or if f is like the piece beyond a wall.
+    fn around(&self, p: DVec3, values: &[f64; STENCIL], pairs: &[[u32; 2]]) -> Option<Taylor> {
+        let found = Taylor { p, jet: jet(values, self.step)? };
+        let normal = found.normal();
+        let off = |k: u32| self.vertices[k as usize].slope(p).1.normalize_or_zero().distance(normal);
+        let is_own = |&[own, other]: &[u32; 2]| off(own) <= off(other).max(ALIKE);
+        pairs.iter().all(is_own).then_some(found)
+    }
+
+    /// The polynomial of a piece around a place farther within its region: between the known points
+    /// of an edge that bends, its walls are not exact.
+    fn deeper(&self, field: &dyn Field, label: u32, q: DVec3, beside: u32) -> Taylor {
+        let mut values = [0.0; STENCIL];
+        let places = DEEPER.iter().map(|margins| self.plan(label, q, margins * self.margin));
+        let found = places.into_iter().find_map(|plan| {
+            let Plan::Around(p, pairs) = plan else { return None };
+            field.values(&stencil(p, self.step), &mut values);
+            self.around(p, &values, &pairs)
+        });
+        found.unwrap_or(self.vertices[beside as usize])
     }
 
     /// Whether the sheet of a piece at a place is no surface, since the piece has ended before it
@@ -202,8 +231,9 @@ pub(super) struct EdgedEvaluator<'a> {
     label: Option<u32>,
     /// The evaluator of a piece, once one has been asked for.
     piece: Option<Box<Self>>,
-    /// The points of a batch that need extrapolation, by their index, each with its plan.
-    planned: Vec<(usize, Plan)>,
+    /// The points of a batch that need extrapolation, by their index, each with the label of the
+    /// piece and its plan.
+    planned: Vec<(usize, u32, Plan)>,
     /// The stencils of the planned points, and the values of f there.
     places: Vec<DVec3>,
     values: Vec<f64>,
@@ -233,9 +263,9 @@ impl<'a> EdgedEvaluator<'a> {
                 None if self.table.is_beside_edge(place) => self.label_at(place),
                 None => continue,
             };
-            let plan = self.table.plan(label, place);
+            let plan = self.table.plan(label, place, self.table.margin);
             if !matches!(plan, Plan::Whole) {
-                self.planned.push((k, plan));
+                self.planned.push((k, label, plan));
             }
         }
         self.planned.len() < count
@@ -246,24 +276,26 @@ impl<'a> EdgedEvaluator<'a> {
     fn planned_jets(&mut self, point: impl Fn(usize) -> DVec3, mut store: impl FnMut(usize, Jet)) {
         let step = self.table.step;
         self.places.clear();
-        for (_, plan) in &self.planned {
-            if let Plan::Around(p) = plan {
+        for (.., plan) in &self.planned {
+            if let Plan::Around(p, _) = plan {
                 self.places.extend(stencil(*p, step));
             }
         }
         self.values.resize(self.places.len(), 0.0);
         self.field.values(&self.places, &mut self.values);
         let mut stencils = self.values.as_chunks::<STENCIL>().0.iter();
-        for &(k, plan) in &self.planned {
+        for (k, label, plan) in &self.planned {
+            let q = self.frame.place(point(*k));
             let taylor = match plan {
-                Plan::Around(p) => {
+                Plan::Around(p, pairs) => {
                     let own = stencils.next().expect("a stencil for each place");
-                    Taylor { p, jet: jet_across(own, step) }
+                    let found = self.table.around(*p, own, pairs);
+                    found.unwrap_or_else(|| self.table.deeper(self.field, *label, q, pairs[0][0]))
                 }
-                Plan::Vertex(vertex) => self.table.vertices[vertex as usize],
+                Plan::Vertex(vertex) => self.table.vertices[*vertex as usize],
                 Plan::Whole => continue,
             };
-            store(k, taylor.jet(self.frame.place(point(k))));
+            store(*k, taylor.jet(q));
         }
     }
 
@@ -271,12 +303,13 @@ impl<'a> EdgedEvaluator<'a> {
     /// alone.
     fn piece_jet(&self, label: u32, q: DVec3, whole: f64) -> Jet {
         let step = self.table.step;
-        let taylor = match self.table.plan(label, q) {
+        let taylor = match self.table.plan(label, q, self.table.margin) {
             Plan::Whole => return Jet { value: whole, ..Jet::default() },
-            Plan::Around(p) => {
+            Plan::Around(p, pairs) => {
                 let mut values = [0.0; STENCIL];
                 self.field.values(&stencil(p, step), &mut values);
-                Taylor { p, jet: jet_across(&values, step) }
+                let found = self.table.around(p, &values, &pairs);
+                found.unwrap_or_else(|| self.table.deeper(self.field, label, q, pairs[0][0]))
             }
             Plan::Vertex(vertex) => self.table.vertices[vertex as usize],
         };

@@ -125,7 +125,7 @@ pub(super) fn stencil(p: DVec3, step: f64) -> [DVec3; STENCIL] {
 
 /// The jet by differences of the values at the places of [`stencil`]; none if the slope jumps
 /// between them.
-fn jet(f: &[f64; STENCIL], step: f64) -> Option<Jet> {
+pub(super) fn jet(f: &[f64; STENCIL], step: f64) -> Option<Jet> {
     let jet = jet_across(f, step);
     let most = MOST_BENT * step * jet.gradient.length();
     // Written so that NaN fails.
@@ -141,7 +141,7 @@ fn jet(f: &[f64; STENCIL], step: f64) -> Option<Jet> {
 }
 
 /// The jet by differences of the values at the places of [`stencil`], smooth or not.
-pub(super) fn jet_across(f: &[f64; STENCIL], step: f64) -> Jet {
+fn jet_across(f: &[f64; STENCIL], step: f64) -> Jet {
     let along = |k: usize| (f[k] - f[k + 1]) / (2.0 * step);
     let twice = |k: usize| (f[k] - 2.0 * f[0] + f[k + 1]) / (step * step);
     let mixed = |c: usize, a: usize, b: usize| {

@@ -9,7 +9,7 @@ use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
 /// Largest [residual](Search::residual) between two vertices of one piece.
-const ALIKE: f64 = 0.03;
+pub(super) const ALIKE: f64 = 0.03;
 /// The same for vertices nearer to each other than neighbours of the grid, where a jet predicts
 /// more exactly.
 pub(super) const ALIKE_NEAR: f64 = 0.01;

@@ -328,7 +328,7 @@ fn joined(search: &Search<'_>) -> Forest {
     sets.forest
 }
 
-/// Sets of vertices, of which some must not be joined.
+/// Disjoint sets of vertices. Two sets with an edge between them must stay apart.
 struct Sets {
     forest: Forest,
     /// For each set, by its least vertex, the vertices that are across an edge from one of its own.

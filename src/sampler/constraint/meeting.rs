@@ -2,7 +2,7 @@
 
 use super::{AT_REST, BESIDE};
 use crate::math::newton::{self, STEPS, StepLimits, step_to_corner, step_to_curve, step_to_surface};
-use crate::math::{Bounds, SQRT_3};
+use crate::math::{Bounds, SHARP, SQRT_3};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
@@ -83,6 +83,20 @@ impl Meeting {
         let (position, (tangent, scale_sq)) = newton::land(start, limits(reach), step_at)?;
         let length = tangent.length();
         Some(Self { position, branches, tangent: tangent / length, sine: length / scale_sq.sqrt() })
+    }
+
+    /// Points of the creases of two branches that end at a corner.
+    pub(super) fn beside_corner(probe: &mut Probe, [a, b]: [u32; 2], corner: DVec3, step: f64) -> Vec<Self> {
+        let branches = [a.min(b), a.max(b)];
+        let reach = BESIDE * step;
+        let Some(at_corner) = Self::of_branches(probe, branches, corner, reach, SHARP) else {
+            return Vec::new();
+        };
+        let places = [at_corner.tangent, -at_corner.tangent].map(|way| corner + way * reach);
+        let points = places.map(|place| Self::of_branches(probe, branches, place, reach, SHARP));
+        let mut points: Vec<Self> = points.into_iter().flatten().collect();
+        points.retain(|point| point.are_left(probe, &branches, step).is_some());
+        points
     }
 
     /// Whether the patches of these branches are on the left of the crease, in the direction of its

@@ -236,18 +236,10 @@ impl Creases {
             pause().await;
             for (k, &a) in patches.iter().enumerate() {
                 for &b in &patches[..k] {
-                    let near = |probe: &mut Probe, place, reach: f64| {
-                        Meeting::of_branches(probe, [b, a], place, reach * step, SHARP)
-                    };
-                    let Some(at_corner) = near(probe, position, BESIDE) else { continue };
-                    for way in [at_corner.tangent, -at_corner.tangent] {
-                        let meeting = near(probe, position + way * (BESIDE * step), BESIDE)
-                            .filter(|meeting| {
-                                bounds.holds(meeting.position)
-                                    && !self.has_point(meeting.position, meeting.branches, step)
-                            })
-                            .filter(|meeting| meeting.are_left(probe, &[b, a], step).is_some());
-                        if let Some(meeting) = meeting {
+                    for meeting in Meeting::beside_corner(probe, [b, a], position, step) {
+                        let is_new = bounds.holds(meeting.position)
+                            && !self.has_point(meeting.position, meeting.branches, step);
+                        if is_new {
                             trace::trace(probe, bounds, self, meeting, step).await;
                         }
                     }

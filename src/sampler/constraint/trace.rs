@@ -224,7 +224,7 @@ impl Walk<'_, '_> {
         let mut beyond = *beyond;
         'nearer: for _ in 0..MOST_RETREATS {
             let way = beyond.position - here;
-            for third in self.branches_around(&beyond) {
+            for third in self.branches_around(beyond.position) {
                 let corner =
                     common_point(self.probe, branches, Third::Branch(third), here + 0.5 * way, way.length());
                 if let Some(corner) = corner
@@ -261,7 +261,35 @@ impl Walk<'_, '_> {
                 _ => inactive = middle,
             }
         }
+        let corner = self.corner_beside(here, way, active);
+        if let Some((corner, third)) = corner {
+            let patches = [self.patches, &[third]].concat();
+            return self.end_at(creases, [here, corner], &patches, ONE_CORNER, points);
+        }
         self.end_at(creases, [here, active], self.patches, ONE_END, points)
+    }
+
+    /// The corner nearest to the end of a crease, within a step and ahead of `here`, and its third
+    /// branch, which has another crease there. At a reflex corner that branch gives f nowhere along
+    /// this one, and where pieces are extrapolated the end is known less well.
+    fn corner_beside(&mut self, here: DVec3, way: DVec3, end: DVec3) -> Option<(DVec3, u32)> {
+        let mut nearest: Option<(DVec3, u32)> = None;
+        for third in self.others_around(Bounds::new(end - self.step, end + self.step)) {
+            let corner = common_point(self.probe, self.start.branches, Third::Branch(third), end, self.step);
+            let corner = corner.filter(|corner| {
+                (*corner - here).dot(way) > 0.0
+                    && nearest.is_none_or(|(known, _)| corner.distance(end) < known.distance(end))
+            });
+            let ends = |walk: &mut Self, corner, b| {
+                !Meeting::beside_corner(walk.probe, [b, third], corner, walk.step).is_empty()
+            };
+            if let Some(corner) = corner
+                && self.start.branches.into_iter().any(|b| ends(self, corner, b))
+            {
+                nearest = Some((corner, third));
+            }
+        }
+        nearest
     }
 
     /// Ends the walk on its way from one point to another: at the corner of these patches there,
@@ -305,19 +333,23 @@ impl Walk<'_, '_> {
 
     /// The branches, other than those of the walk, that may give f along a chord.
     fn others_along(&mut self, [a, b]: [DVec3; 2]) -> Vec<u32> {
-        let around = Bounds::new(a.min(b) - NEAR * self.step, a.max(b) + NEAR * self.step);
+        self.others_around(Bounds::new(a.min(b) - NEAR * self.step, a.max(b) + NEAR * self.step))
+    }
+
+    /// The branches, other than those of the walk, that may give f in a box.
+    fn others_around(&mut self, around: Bounds) -> Vec<u32> {
         let mut found = self.probe.field.labels_in(&around).unwrap_or_default();
         found.retain(|branch| !self.patches.contains(branch));
         found
     }
 
     /// The branches, other than those of the walk, that give f at a point and around it.
-    fn branches_around(&mut self, point: &Meeting) -> Vec<u32> {
+    fn branches_around(&mut self, p: DVec3) -> Vec<u32> {
         let aside = BESIDE * self.step;
         let offsets = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
         let mut found: Vec<u32> = Vec::new();
         for offset in offsets {
-            let branch = self.probe.field.label(point.position + offset * aside);
+            let branch = self.probe.field.label(p + offset * aside);
             if !self.patches.contains(&branch) && !found.contains(&branch) {
                 found.push(branch);
             }
