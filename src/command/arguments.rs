@@ -241,8 +241,8 @@ pub(crate) struct SampleArguments {
     /// Add a column to the files, NAME=FORMULA, such as "H=(k_1+k_2)/2": a formula of x, y, z, the
     /// normal n_x, n_y, n_z, the principal curvatures k_1 >= k_2, the direction d_x, d_y, d_z of
     /// k_1, radius, level, area (the part of the mesh area that belongs to the particle), edge (the
-    /// distance to the nearest sharp edge) and the parameters. ply and csv name the column, npy has
-    /// it after the normal, glb as the attribute _NAME in capitals. May be repeated
+    /// distance to the nearest sharp edge or rim) and the parameters. ply and csv name the column,
+    /// npy has it after the normal, glb as the attribute _NAME in capitals. May be repeated
     #[arg(
         long = "value", value_name = "NAME=FORMULA", value_parser = value, allow_hyphen_values = true,
         help_heading = "Output"
@@ -310,7 +310,7 @@ pub(crate) struct SampleArguments {
 
     /// Print a program that makes these particles instead of sampling them: in Rust, for the
     /// package for npm (js), for the Python package, or as a command (shell). No file is written.
-    /// For formulas
+    /// For formulas, not for points, images or meshes
     #[arg(long, value_name = "LANGUAGE", value_parser = one_of(&Language::ALL), conflicts_with_all = ["json", "porosity", "image", "mesh_in"], help_heading = "Output")]
     pub(crate) print: Option<(&'static str, Language)>,
 
@@ -358,8 +358,8 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "NUMBER", value_parser = number, requires = "image", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) iso: Option<f64>,
 
-    /// Label whose boundary is sampled, for an --image whose voxels are whole numbers that name
-    /// bodies
+    /// Label whose boundary is sampled, for an --image whose voxels are whole numbers that say to
+    /// which body they belong
     #[arg(long, value_name = "NUMBER", value_parser = number, requires = "image", conflicts_with = "iso", help_heading = "Surface")]
     pub(crate) label: Option<f64>,
 

@@ -91,12 +91,12 @@ export interface Options {
   /** whether gaps between fronts are filled with a particle; default `fill` */
   gaps?: 'fill' | 'leave';
   seed?: number;
-  /** number of particles at which the run stops */
+  /** number of particles at which the run stops; default 4,400,000 */
   maxParticles?: number;
   /**
    * values at the particles, by name: formulas of x, y, z, the normal (n_x, n_y, n_z), the principal curvatures (k_1,
-   * k_2), the direction of k_1 (d_x, d_y, d_z), radius, level, area and edge, the distance to the nearest sharp edge;
-   * or functions of a point. Files contain them, too
+   * k_2), the direction of k_1 (d_x, d_y, d_z), radius, level, area and edge, the distance to the nearest sharp edge
+   * or rim; or functions of a point. Files contain them, too
    */
   values?: Record<string, string | OfPlace>;
   /** whether to make a report, which takes about as long as the sampling; default true */

@@ -320,11 +320,12 @@ def sample(
         gaps: ``"fill"``: where fronts meet, gaps that are wide enough get a particle; ``"leave"``:
             they do not.
         seed: Seed of the point where the front begins, 0 to 2**64 - 1.
-        max_particles: Number of particles at which the run stops.
+        max_particles: Number of particles at which the run stops; 4,400,000 without it.
         values: More columns, by name: formulas of x, y, z, the normal n_x, n_y, n_z, the principal
             curvatures k_1 >= k_2, the direction d_x, d_y, d_z of k_1, radius, level, area (the
-            share of the surface), edge (the distance to the nearest sharp edge) and ``params``,
-            such as ``{"H": "(k_1 + k_2)/2"}``; or functions of points. They are :attr:`Sample.values`, and files have them: PLY, CSV, NPY and GLB.
+            share of the surface), edge (the distance to the nearest sharp edge or rim) and
+            ``params``, such as ``{"H": "(k_1 + k_2)/2"}``; or functions of points. They are
+            :attr:`Sample.values`, and files have them: PLY, CSV, NPY and GLB.
         measure: Whether the particles are measured. It may take longer than the sampling; without
             it the report has no quality figures.
         progress: A function that is called with the share of the work done, 0 to 1.

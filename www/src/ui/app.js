@@ -323,7 +323,7 @@ function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, ope
       act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }),
     },
     { keys: ['h', 'H'], shown: 'H', label: 'Hide the panels; then the timeline, too; then show all', act: hide },
-    { keys: ['?'], shown: '?', label: 'This sheet', act: open },
+    { keys: ['?'], shown: '?', label: 'This help', act: open },
   ];
 }
 

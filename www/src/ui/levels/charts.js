@@ -265,7 +265,7 @@ function moveChart(moves, at) {
 /** @param {number} value */
 const inR = (value) => `${formatFixed(value, 3)}\u00a0r`;
 
-const NOTHING = `Not known. The positions of each step are kept of up to ${formatCount(MOST_STEPPED)} particles, once a relaxation has ended.`;
+const NOTHING = `Not known. The positions of each step are kept for up to ${formatCount(MOST_STEPPED)} particles, once a relaxation has ended.`;
 
 /**
  * @param {() => Chart} read
