@@ -153,7 +153,7 @@ fn no_label(value: f64, count: usize, known: &[f64]) -> String {
 /// ```
 /// use marching_particles::{Image, Settings, sample};
 ///
-/// A bright ball of radius 10 voxels in the dark, as an array in which x changes fastest.
+/// // A bright ball of radius 10 voxels in the dark, as an array in which x changes fastest.
 /// let distance = |i: usize| {
 ///     let offset = |k: usize| (k % 32) as f32 - 15.5;
 ///     (offset(i).powi(2) + offset(i / 32).powi(2) + offset(i / 1024).powi(2)).sqrt()

@@ -22,12 +22,12 @@
 //! let mut lesson = Lesson::new(Box::new(sphere.field()), &sphere.bounds, &settings)?;
 //! while !lesson.step(1_000).is_done {}
 //!
-//! The first level treats the seed: all six children are new.
+//! // The first level treats the seed: all six children are new.
 //! let first = lesson.chapters()[0].clone();
 //! assert_eq!(first.fates.added, 6);
 //! let events = lesson.events(first.first_event, first.events);
 //! assert!(matches!(events[0], Event::Seed { particle: 0, .. }));
-//! Back to the moment before the first event.
+//! // Back to the moment before the first event.
 //! lesson.seek(first.first_event);
 //! assert!(lesson.particles().is_empty());
 //! # Ok::<(), marching_particles::lesson::LessonError>(())

@@ -12,7 +12,7 @@ use glam::DVec3;
 /// use marching_particles::{MeshEdges, Settings, TriangleMesh, sample};
 /// use marching_particles::glam::dvec3;
 ///
-/// A tetrahedron, whose corners and edges are kept.
+/// // A tetrahedron, whose corners and edges are kept.
 /// let corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]];
 /// let corners = corners.map(|[x, y, z]| dvec3(x.into(), y.into(), z.into()));
 /// let faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];

@@ -31,12 +31,12 @@ use std::sync::Arc;
 /// let sphere = |p: marching_particles::glam::DVec3| p.length() - 1.0;
 /// // Finer towards the pole: neighbours are 0.04 apart there, and 0.16 on the other side.
 /// let spacing = Spacing::parse("0.1 - 0.06 z")?;
-/// let fine = sample(sphere, Settings::default().spaced(spacing))?;
+/// let fine = sample(sphere, &Settings::default().spaced(spacing))?;
 /// assert!(fine.report().sizes.radius_max > 3.0 * fine.report().sizes.radius_min);
 ///
 /// // The same by a function, scaled to a number of particles.
 /// let spacing = Spacing::by(|p: marching_particles::glam::DVec3| 0.1 - 0.06 * p.z);
-/// let counted = sample(sphere, Settings::with_count(2_000).spaced(spacing))?;
+/// let counted = sample(sphere, &Settings::with_count(2_000).spaced(spacing))?;
 /// assert!(counted.report().count.abs_diff(2_000) <= 60);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
