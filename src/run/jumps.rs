@@ -7,7 +7,8 @@
 use super::RunState;
 use crate::field::{Enclosure, Evaluator, Field};
 use crate::math::Bounds;
-use glam::DVec3;
+use crate::particles::{Particles, SlotFate, Slots};
+use glam::{DVec3, Vec3};
 
 /// Number of bisections of a path across a jump: as many as double precision resolves.
 const HALVINGS: u32 = 52;
@@ -31,15 +32,21 @@ pub(super) struct Ends {
 }
 
 impl RunState {
-    /// Where the triangles of the particles end, from a selection of the places.
+    /// Where the triangles of the particles end, from a selection of the places. Near the box its
+    /// faces hide such an end; there, particles with a child that found no surface show it.
     pub(super) fn ends(&self, field: &dyn Field) -> Ends {
         let mut ends = Ends::default();
-        let Some(opening) = &self.measuring.measured.opening else { return ends };
+        let Particles { local, slots, .. } = self.particles();
+        let has_lost = |slots: &Slots| (0..Slots::COUNT).any(|k| slots.get(k) == SlotFate::NotConverged);
+        let places: Vec<Vec3> = match &self.measuring.measured.opening {
+            Some(opening) => opening.places.clone(),
+            None => slots.iter().zip(local).filter(|(slots, _)| has_lost(slots)).map(|(_, &p)| p).collect(),
+        };
         let (frame, reach) = (self.evaluator(field).frame(), 2.0 * self.sampler.radius());
         // Evaluates f itself: a piece need not be right beyond an end.
         let f = |p: DVec3| field.value(frame.place(p));
-        let step = opening.places.len().div_ceil(LOOKED_AT);
-        for place in opening.places.iter().step_by(step).map(|place| place.as_dvec3()) {
+        let step = places.len().div_ceil(LOOKED_AT).max(1);
+        for place in places.iter().step_by(step).map(|place| place.as_dvec3()) {
             let kind = if jumps_near(&f, place, reach) { &mut ends.at_jump } else { &mut ends.others };
             kind.get_or_insert(place);
         }
