@@ -284,7 +284,9 @@ def test_the_stub_has_the_signatures_of_the_package():
         body = names[kind].body
         stated = {getattr(node, "name", None) or node.target.id for node in body}
         real = getattr(mp, kind)
-        known = {name for name in vars(real) if not name.startswith("_")} | {"__len__"}
+        # Notebooks call what begins with `_repr_`.
+        known = {name for name in vars(real) if name.startswith("_repr_") or not name.startswith("_")}
+        known |= {"__len__"}
         # Those of a field are set when it is made.
         set_later = {"Field": {"bounds"}, "Model": {"bounds", "report", "warnings"}}
         fields = set(set_later.get(kind, ()))
