@@ -190,7 +190,7 @@ export class Core {
      */
     particle_file(extension: string): Uint8Array<ArrayBuffer> | undefined;
     /**
-     * Patch of each particle, by the number of its branch; empty without creases.
+     * Patch of each particle, as the number of its branch; empty without creases.
      */
     patch(): Uint32Array<ArrayBuffer>;
     /**
