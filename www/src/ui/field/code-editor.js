@@ -136,7 +136,6 @@ const theme = EditorView.theme({
     font: 'var(--code-size)/1.25rem var(--mono)',
     fontVariantLigatures: 'none',
     color: 'var(--ink)',
-    maxHeight: '12rem',
   },
   '&.cm-focused': { outline: 'none' },
   '.cm-scroller': { font: 'inherit', lineHeight: '1.25rem', overflow: 'auto' },

@@ -26,7 +26,7 @@ import { kindOf } from './unchanging.js';
  */
 export function createFormula(engine, description, replace) {
   const input = new FormulaInput(engine, description, replace);
-  const preview = createPreview(engine);
+  const shown = createShown(engine, input.error);
   const help = button(
     { class: 'plain small', press: () => openFunctions(description, (name) => input.insert(name)) },
     'What can I write?',
@@ -35,9 +35,7 @@ export function createFormula(engine, description, replace) {
     'div',
     { class: 'section formula' },
     h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
-    input.holder,
-    input.error,
-    ...preview,
+    h('div', { class: 'formula-room' }, h('div', { class: 'formula-text' }, input.holder, shown)),
   );
   document.querySelector('.skip')?.addEventListener('click', (event) => {
     event.preventDefault();
@@ -208,8 +206,11 @@ const excerptElement = ({ excerpt }) =>
 /** Least size of a formula that is too wide, as a share of its size; beyond that it scrolls. */
 const LEAST_SIZE = 0.7;
 
-/** Shows the formula as mathematics, and says so if it is not the one in the editor. @param {Engine} engine */
-function createPreview(engine) {
+/**
+ * Shows the formula as mathematics, and says so if it is not the one in the editor.
+ * @param {Engine} engine @param {HTMLElement} fault  lies over it
+ */
+function createShown(engine, fault) {
   // Compared as text, it stays equal while a parameter changes, so it is not drawn and measured again.
   const written = computed(() => JSON.stringify(engine.field.value?.mathml ?? null));
   const math = computed(() => /** @type {MathNode | null} */ (JSON.parse(written.value)));
@@ -257,7 +258,7 @@ function createPreview(engine) {
     if (preview.clientWidth !== width) fit();
     width = preview.clientWidth;
   }).observe(preview);
-  return [last, h('div', { class: 'code-shown' }, preview, createUnchanging(engine))];
+  return h('div', { class: 'code-shown' }, fault, last, preview, createUnchanging(engine));
 }
 
 /**

@@ -27,11 +27,15 @@ import { storyOf } from './story.js';
 export function mountField(body, engine, description, shared) {
   fill(
     body,
-    createFormula(engine, description, shared.replace),
-    createModel(engine, description),
-    createImage(engine, description),
-    createMesh(engine, description),
-    createParameters(engine, shared),
+    h(
+      'div',
+      { class: 'section entry' },
+      createFormula(engine, description, shared.replace),
+      createModel(engine, description),
+      createImage(engine, description),
+      createMesh(engine, description),
+      createParameters(engine, shared),
+    ),
     createGallery(engine, description, shared.replace),
     ...createLoading(engine),
     createStory(engine, description),

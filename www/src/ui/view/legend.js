@@ -52,7 +52,7 @@ const VALUES = [
   ['k_1 k_2', 'Gaussian curvature'],
   ['k_1', 'larger principal curvature'],
   ['max(abs(k_1), abs(k_2))', 'sharpest bend'],
-  ['edge', 'distance to the nearest sharp edge'],
+  ['edge', 'distance to the nearest sharp edge or rim'],
   ['area', 'share of the surface'],
   ['n_z', 'how far it faces up'],
   ['z', 'height'],

@@ -1,23 +1,39 @@
-/** A graphics card that takes long for its frames: it is slow by the clock of the page, whatever the machine. */
+/** A graphics card that takes long for its frames, by the clock of the page, which stands still between them. */
 import { expect, test } from '@playwright/test';
 import { atRest, expectSurface, open, status } from './browser.js';
 
 /** @import { Page } from '@playwright/test' */
 
-/** Has frames come no sooner than this one after the other, and keeps the width of the canvas in each. @param {Page} page */
+/**
+ * Has every frame take so long by the page's clock, however long it takes in truth, and keeps the width of the canvas
+ * in each.
+ * @param {Page} page
+ */
 const slowDown = (page, frameMs = 100) =>
   page.addInitScript((ms) => {
     const widths = /** @type {number[]} */ ([]);
     Object.assign(window, { widths });
-    window.requestAnimationFrame = (draw) => {
-      const timer = setTimeout(() => {
-        draw(performance.now());
-        const canvas = /** @type {HTMLCanvasElement | null} */ (document.querySelector('#canvas-host canvas'));
-        if (canvas) widths.push(canvas.width);
-      }, ms);
-      return Number(timer);
+    /** @type {Map<number, FrameRequestCallback>} */
+    const asked = new Map();
+    let [nowMs, last, isDue] = [0, 0, false];
+    performance.now = () => nowMs;
+    const frame = () => {
+      isDue = false;
+      nowMs += ms;
+      const all = [...asked.values()];
+      asked.clear();
+      for (const draw of all) draw(nowMs);
+      const canvas = /** @type {HTMLCanvasElement | null} */ (document.querySelector('#canvas-host canvas'));
+      if (canvas) widths.push(canvas.width);
     };
-    window.cancelAnimationFrame = (handle) => clearTimeout(handle);
+    window.requestAnimationFrame = (draw) => {
+      last += 1;
+      asked.set(last, draw);
+      if (!isDue) setTimeout(frame);
+      isDue = true;
+      return last;
+    };
+    window.cancelAnimationFrame = (handle) => asked.delete(handle);
   }, frameMs);
 
 /** Widths of the canvas since the last call. @param {Page} page @returns {Promise<number[]>} */

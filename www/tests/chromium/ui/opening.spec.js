@@ -40,10 +40,7 @@ test('the surface grows level by level before a camera that stands still where t
   // It is seen growing, however slow the machine: no frame adds more than a few levels.
   expect(new Set(seen.map(({ level }) => level)).size).toBeGreaterThan(15);
   for (let k = 1; k < seen.length; k += 1) expect(seen[k].particles).toBeGreaterThanOrEqual(seen[k - 1].particles);
-  // Relaxation moves the outline, which the fit follows, by less than two pixels.
-  const cameras = seen.map(({ camera }) => /** @type {number[]} */ (JSON.parse(camera)));
-  for (const [k, last] of (cameras.at(-1) ?? []).entries())
-    for (const camera of cameras) expect(Math.abs(camera[k] - last)).toBeLessThan(0.01);
+  expect(new Set(seen.map(({ camera }) => camera)).size).toBe(1);
   await atRest(page);
   const { yaw, pitch, distance } = (await state(page)).view.camera;
   expect([yaw, pitch]).toEqual([0.62, 0.42]);
