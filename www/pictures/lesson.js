@@ -3,12 +3,11 @@
  * address]`.
  *
  * Writes learn/stills/*.webp: what stands in a figure's place without JavaScript, before it is live, and if it cannot
- * be; and a still of each comparison, for readers without JavaScript.
+ * be; and a still of the comparison, for readers without JavaScript.
  */
 import { writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 import { expect } from '@playwright/test';
-import { COMMON } from '../src/learn/whatifs.js';
 import { launch } from './browser.js';
 
 const [base = 'http://localhost:4517/'] = process.argv.slice(2);
@@ -50,18 +49,16 @@ for (const stage of await page.locator('[data-figure]').all()) {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   await save(name ?? '', await stage.screenshot());
 }
-// They are as wide as a column.
+// It is as wide as a column.
 await page.setViewportSize({ width: 640, height: 900 });
-for (const { id } of COMMON) {
-  await page.goto(`${base}learn/#what-if-${id}`);
-  await page.reload();
-  await page.addStyleTag({ content: STYLE });
-  const bench = page.locator('#bench');
-  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
-  await expect(bench.locator('.figure-status')).toBeEmpty();
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  await save(`what-if-${id}`, await bench.locator('.pair').screenshot());
-}
+await page.goto(`${base}learn/#what-if`);
+await page.reload();
+await page.addStyleTag({ content: STYLE });
+const bench = page.locator('#bench');
+await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+await expect(bench.locator('.figure-status')).toBeEmpty();
+await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+await save('what-if', await bench.locator('.pair').screenshot());
 
 /** @param {string} name @param {Buffer} png */
 async function save(name, png) {

@@ -53,10 +53,10 @@ export function tangentPlane(opened, moment) {
     const taken = [...shapes, ...children.map(numberPlace)];
     for (const { particle } of gathered?.neighbours ?? []) {
       svg.append(ring('centre', at(particle), 0.08));
-      svg.append(label('number', clear(at(particle), taken), nameOf(particle)));
+      svg.append(label('number', clear(at(particle), taken, nameOf(particle)), nameOf(particle)));
     }
     for (const { place, particle } of added)
-      if (particle !== null) svg.append(label('number', clear(place, taken), nameOf(particle)));
+      if (particle !== null) svg.append(label('number', clear(place, taken, nameOf(particle)), nameOf(particle)));
     const now = slot === null ? null : children[slot];
     if (now?.compared && moment.event.type === 'compared')
       svg.append(ring('tolerance', inPlane(plane, now.compared.position), now.compared.limit / subject.radius));
@@ -68,22 +68,25 @@ export function tangentPlane(opened, moment) {
 /** Groups the marks of a slot under its number. @param {Child} child @param {Element[]} marks */
 export const slotGroup = ({ slot }, marks) => s('g', { 'data-slot': slot }, ...marks);
 
+/** Directions from a particle's centre in which its number is tried, after those away from the middle. */
+const AROUND = Array.from({ length: 8 }, (_, k) => (k * Math.PI) / 4);
+
 /**
  * Returns the place of a particle's number within its disc: outwards, or elsewhere if it would be covered.
  * @param {Point} at @param {readonly Point[]} taken  places of the shapes and of the slots' numbers
+ * @param {string} name  the number; three digits are wider than high
  * @returns {Point}
  */
-function clear([x, y], taken) {
-  const out = y > 0.5 ? BESIDE : -BESIDE;
-  const places = /** @type {Point[]} */ ([
-    [x, y + out],
-    [x, y - out],
-    [x + BESIDE, y],
-    [x - BESIDE, y],
-  ]);
+function clear([x, y], taken, name) {
+  const wide = Math.max(1, name.length / 2);
+  const outwards = y > 0.5 ? Math.PI / 2 : -Math.PI / 2;
+  const places = AROUND.map((turn) => {
+    const way = outwards + turn;
+    return /** @type {Point} */ ([x + BESIDE * Math.cos(way), y + BESIDE * Math.sin(way)]);
+  });
   // The particle in the middle lies over its neighbours.
   const room = places.map(([u, v]) =>
-    Math.min(Math.hypot(u, v) - MIDDLE, ...taken.map((one) => Math.hypot(one[0] - u, one[1] - v))),
+    Math.min(Math.hypot(u, v) - MIDDLE, ...taken.map((one) => Math.hypot((one[0] - u) / wide, one[1] - v))),
   );
   const free = room.findIndex((far) => far >= CLEAR);
   return places[free < 0 ? room.indexOf(Math.max(...room)) : free];

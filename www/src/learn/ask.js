@@ -148,8 +148,11 @@ const enter = (id, about, stops) =>
  * @param {string | number} guess
  * @param {string | number} right
  */
-function judge({ kind }, guess, right) {
-  if (kind === 'choice') return guess === right ? 'As you said.' : 'You said otherwise.';
+function judge({ kind, choices = [] }, guess, right) {
+  if (kind === 'choice')
+    return guess === right
+      ? 'As you said.'
+      : `You said: ${choices.find(({ value }) => value === guess)?.label ?? guess}.`;
   if (kind === 'pick') return guess === right ? 'Exactly there.' : '';
   if (guess === right) return 'Exactly.';
   const far = Math.abs(Number(guess) - Number(right));

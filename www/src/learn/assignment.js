@@ -7,10 +7,10 @@ import { fill, h, uniqueId } from '../ui/dom.js';
 import { kept } from '../ui/remembered.js';
 import { download } from '../ui/share.js';
 import { createBench } from './bench.js';
+import { USUAL } from './knobs.js';
 import { ringsOf } from './measure.js';
 import { namedFigures } from './score.js';
 import { CONTROLS, LONGEST_TITLE, lockedWords, packTask } from './task.js';
-import { USUAL, whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, LabRun, Score, Setup, Stops, Task, Work } from './types.js' */
 
@@ -90,8 +90,8 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
   );
   host.setAttribute('aria-labelledby', id);
   host.hidden = false;
-  const bench = await createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
-  void bench.open(task.setup.what, task.setup);
+  const bench = await createBench(benchHost, lab, { locks: task.locks });
+  void bench.open(task.setup);
 }
 
 /**
@@ -109,14 +109,14 @@ export function createMaker({ setup, linkOf }) {
   const link = h('input', { class: 'box wide', readonly: true, 'aria-label': 'Link of the assignment' });
   const told = h('p', { class: 'quiet', role: 'status' });
   const write = () => {
-    const whatIf = whatIfOf(setup().what);
+    const own = locks.flatMap(({ box }) => (box.checked ? [/** @type {Control} */ (box.value)] : []));
     // If learners are to find the best and the worst, the teacher's own tries would give the solution away.
-    const { what: id, on, left, right } = { ...setup(), ...(whatIf.knobs ? { left: USUAL, right: USUAL } : {}) };
-    what.textContent = `It compares what stands under “What if”: ${whatIf.name}.${whatIf.knobs ? ' Learners begin with the sampling of the lesson; your own tries stay here.' : ''}`;
+    const isGiven = own.includes('right');
+    what.textContent = `It has the surface of “What if”. ${isGiven ? 'Learners see the two samplings that stand there.' : 'Learners begin with the sampling of the lesson; your own tries stay here.'}`;
     const task = {
       title: title.value,
-      setup: { what: id, on, left, right },
-      locks: locks.flatMap(({ box }) => (box.checked ? [/** @type {Control} */ (box.value)] : [])),
+      setup: isGiven ? setup() : { ...setup(), left: USUAL, right: USUAL },
+      locks: own,
       questions: questions.value
         .split('\n')
         .map((line) => line.trim())
@@ -161,8 +161,6 @@ export function createMaker({ setup, linkOf }) {
   document.body.append(dialog);
   return {
     open() {
-      // If several choices are to be changed at once, they are not locked.
-      for (const { box } of locks) if (box.value === 'right' && whatIfOf(setup().what).knobs) box.checked = false;
       write();
       dialog.showModal();
     },

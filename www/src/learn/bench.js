@@ -1,148 +1,175 @@
-/** The bench for comparing two runs. */
-import { signal } from '@preact/signals-core';
+/**
+ * The bench of *What if*: the learner changes several choices of the sampling on the right, on any surface. Beside it
+ * stands the best sampling so far; what each choice does is said below.
+ */
+import { computed, signal } from '@preact/signals-core';
+import { button } from '../ui/button.js';
 import { fill, h } from '../ui/dom.js';
-import { offerNumber, toleranceNumber } from './drag.js';
+import { createNumber, offerNumber, toleranceNumber } from './drag.js';
+import { reasonOf } from './figure.js';
+import {
+  KNOBS,
+  knobSide,
+  knobWords,
+  partsOf,
+  partWords,
+  SEED,
+  seedAt,
+  setupOf,
+  TOLERANCE,
+  turned,
+  USUAL,
+} from './knobs.js';
+import { createMarkSwitch, isMarked } from './marks.js';
 import { createPair } from './pair.js';
 import { createSelectRow } from './parts.js';
-import { COMMON, FAIL, partsOf, setupOf, sidesOf, TOLERANCE, turned, USUAL, whatIfOf } from './whatifs.js';
+import { verdictOf, written } from './score.js';
+import { Tries } from './tries.js';
+import { OF_KNOBS } from './whatifs.js';
 
-/** @import { ReadonlySignal } from '@preact/signals-core' */
-/** @import { Control, Lab, Setup, WhatIf } from './types.js' */
+/** @import { Choice } from '../ui/types.js' */
+/** @import { Control, Lab, Score, Setup, Try } from './types.js' */
+
+const ENDS = ['Best so far', 'Worst so far'];
+
+/** Shared by both benches of a page. @type {WeakMap<Lab, Tries>} */
+const all = new WeakMap();
+
+/** @param {Lab} lab */
+function triesOf(lab) {
+  const known = all.get(lab) ?? new Tries(lab);
+  all.set(lab, known);
+  return known;
+}
 
 /**
  * @param {HTMLElement} host
  * @param {Lab} lab
- * @param {{ setup?: Setup, locks?: readonly Control[], onChoice?: (setup: Setup) => void }} [how]
- * `locks`: controls that cannot be changed; `onChoice` receives the learner's choices
+ * @param {{ locks?: readonly Control[], onChoice?: (setup: Setup) => void }} [how]  `locks`: controls that cannot be
+ *   changed; `onChoice` receives the learner's choices
  */
-export async function createBench(
-  host,
-  lab,
-  { setup: first = setupOf(COMMON[0].id), locks = [], onChoice = () => {} } = {},
-) {
+export async function createBench(host, lab, { locks = [], onChoice = () => {} } = {}) {
   const { choices, labOn } = await surfacesOf(lab);
-  const pair = createPair();
-  const look = h('p', { class: 'look' });
-  const chosen = h('div', { class: 'controls' });
-  const [above, below] = [h('div', { class: 'beside' }), h('div', { class: 'beside' })];
-  let setup = first;
+  const isLocked = locks.includes('right');
+  /** The comparison that is shown or on its way. */
+  const setup = signal(setupOf({}));
+  const right = computed(() => setup.value.right);
+  const tries = computed(() => triesOf(labOn(setup.value.on)));
   let shown = Promise.resolve();
-  /** The knob values on the right; the lesson's values if the choice has no knobs. */
-  const knobs = signal(USUAL);
-  /** The choice whose controls are shown. */
-  let standing = '';
-  /** Updates the controls to show a setup. */
-  let follow = (/** @type {Setup} */ _next) => {};
-  /** The knobs and the stored tries. @type {ReturnType<typeof import('./fail.js').createFail> | null} */
-  let fail = null;
-  const what = createSelectRow({
-    name: 'What changes',
-    choices: COMMON.map(({ id, name }) => ({ value: id, label: name })),
-    value: setup.what,
-    change: (id) => open(id, { on: setup.on }, choose),
-  });
-  const surface = createSelectRow({
-    name: 'Surface',
-    choices,
-    value: setup.on,
-    change: (on) => open(setup.what, whatIfOf(setup.what).knobs ? { on } : { ...setup, on }, choose),
-  });
-  for (const { select } of [what, surface]) select.disabled = locks.includes('what');
+  const pair = createPair(isMarked, createMarkSwitch());
+  const verdict = createVerdict();
 
-  /** @param {Setup} next */
-  function choose(next) {
-    void show(next);
-    onChoice(next);
-  }
-
-  /**
-   * Shows a choice with the given values. Without values, a choice with knobs shows its stored tries.
-   * @param {string} id @param {{ on?: unknown, left?: unknown, right?: unknown }} given
-   * @param {(next: Setup) => unknown} [act]
-   */
-  async function open(id, given, act = show) {
-    const values = whatIfOf(id).knobs ? (await import('./fail.js')).keptSides(labOn(String(given.on ?? ''))) : {};
-    await act(setupOf(id, { ...values, ...given }));
-  }
-
-  /** Creates the controls of a choice. @param {WhatIf} whatIf */
-  async function stand({ id, values, knobs, look: words }) {
-    const { on } = setup;
-    const own = `${id} ${on}`;
-    if (standing === own) return;
-    const module = knobs ? await import('./fail.js') : null;
-    if (`${setup.what} ${setup.on}` !== own || standing === own) return;
-    standing = own;
-    // Elements removed from the page are disposed of, so they are created again.
-    fail = module?.createFail(labOn(on), { choose, isLocked: locks.includes('right'), on }) ?? null;
-    look.textContent = words;
-    fill(above, fail?.kept, fail?.said);
-    fill(below, fail?.verdict);
-    if (fail) {
-      follow = fail.follow;
-      fill(chosen, what.element, surface.element, fail.controls);
-      return;
-    }
-    const sides = createSides(values, locks, (side, value) => choose({ ...setup, [side]: value }));
-    follow = sides.follow;
-    fill(chosen, what.element, surface.element, sides.controls);
-  }
-
-  /** @param {Setup} next */
-  function show(next) {
-    shown = compare(next);
+  /** Shows a comparison; without values it is that of the best and the worst so far. @param {Partial<Setup>} given */
+  function open(given) {
+    const on = choices.some(({ value }) => value === given.on) ? String(given.on) : '';
+    const [best, worst] = triesOf(labOn(on)).values();
+    setup.value = setupOf({ left: best, right: worst, ...given, on });
+    shown = compare(setup.peek());
     return shown;
   }
 
-  /** @param {Setup} asked */
-  async function compare(asked) {
-    const next = { ...asked, on: choices.some(({ value }) => value === asked.on) ? asked.on : '' };
-    setup = next;
-    const whatIf = whatIfOf(setup.what);
-    knobs.value = whatIf.knobs ? setup.right : USUAL;
-    what.set(whatIf.id, whatIf.name);
-    surface.set(next.on);
-    await stand(whatIf);
-    if (setup !== next) return;
-    follow(next);
-    const isPicked = whatIf.knobs && !locks.includes('right');
-    pair.pickWith(isPicked ? (place) => fail?.seed(place) : null);
-    await pair.show({ lab: labOn(next.on), sides: sidesOf(whatIf, [next.left, next.right]), whatIf });
-    if (setup === next) await fail?.tell(next);
+  /** @param {Partial<Setup>} given */
+  function choose(given) {
+    void open(given);
+    onChoice(setup.peek());
   }
 
-  if (locks.length === 0) offerTolerance(host, knobs, (right) => void open(FAIL, { on: setup.on, right }, choose));
-  fill(host, chosen, above, look, pair.element, below);
+  /** Shows a try on the right, beside the best so far; the best beside the worst. @param {string} value */
+  function turnTo(value) {
+    if (isLocked || value === right.peek()) return;
+    const [best = USUAL, worst = USUAL] = tries.peek().values();
+    choose({ on: setup.peek().on, left: best === value ? worst : best, right: value });
+  }
+  const turn = (/** @type {number} */ k, /** @type {string} */ part) => turnTo(turned(right.peek(), k, part));
+
+  /** @param {Setup} next */
+  async function compare(next) {
+    verdict.clear();
+    const sides = [next.left, next.right].map(knobSide);
+    const make = async () => [await sides[0].make(labOn(next.on)), await sides[1].make(labOn(next.on))];
+    await pair.show({ make, labels: () => sides.map(({ label }) => label), card: () => ({}), ...OF_KNOBS });
+    const isNow = () => setup.peek() === next;
+    if (isNow()) await verdict.tell(tries.peek().compare(next.right), isNow);
+  }
+
+  pair.pickWith(isLocked ? null : (place) => turn(SEED, seedAt(place)));
+  const tolerance = toleranceNumber({
+    value: () => Number(partsOf(right.value)[TOLERANCE]),
+    change: (to) => turn(TOLERANCE, String(to)),
+  });
+  const number = createNumber(tolerance);
+  if (isLocked) number.setAttribute('aria-disabled', 'true');
+  if (locks.length === 0) offerNumber('knob', { ...tolerance, stage: () => host });
+  const surface = createSelectRow({
+    name: 'Surface',
+    choices: () => choices,
+    value: () => setup.value.on,
+    change: (on) => choose({ on }),
+    isLocked: locks.includes('on'),
+  });
+  fill(
+    host,
+    h(
+      'div',
+      { class: 'controls' },
+      surface,
+      KNOBS.map((_, k) => knobRow(k, { right: () => right.value, turn, isLocked })),
+    ),
+    h('p', { class: 'knob' }, 'A particle within ', number, ' of a child’s place counts as the child.'),
+    h('div', { class: 'kept', role: 'group', 'aria-label': 'Kept so far' }, () =>
+      tries.value.ends.value.map((one, k) => keptButton(one, k, { right: () => right.value, turnTo, isLocked })),
+    ),
+    verdict.said,
+    h('p', { class: 'look' }, OF_KNOBS.look),
+    pair.element,
+    verdict.reasons,
+  );
   return {
-    show,
     open,
-    setup: () => setup,
+    setup: () => setup.peek(),
     /** Resolves once the runs shown are measured. */
     settled: () => shown,
     /** The runs shown and the stored runs, each once, with names, once they are measured. */
     runs() {
-      const { runs, scores } = pair;
-      const whatIf = whatIfOf(setup.what);
-      const names = sidesOf(whatIf, [setup.left, setup.right]);
-      const sides = (runs ?? []).map((run, k) => ({ label: names[k].label, run, score: scores()?.[k] }));
-      const all = [...(fail?.runs() ?? []), ...sides];
-      return all.filter(({ run }, k) => all.findIndex((one) => one.run === run) === k);
+      const ends = tries.peek().ends.peek();
+      const kept = ends.map(({ value, run, score }, k) => ({ label: `${ENDS[k]}: ${knobWords(value)}`, run, score }));
+      const found = [...kept, ...pair.runs()];
+      return found.filter(({ run }, k) => found.findIndex((one) => one.run === run) === k);
     },
   };
 }
 
 /**
- * Links the tolerance in the text to the sampling on the right.
- * @param {HTMLElement} host @param {ReadonlySignal<string>} knobs @param {(knobs: string) => void} turn
+ * The select of a choice; none for one with a scale. A pressed seed is one of its values while it is chosen.
+ * @param {number} k @param {{ right: () => string, turn: (k: number, part: string) => void, isLocked: boolean }} how
  */
-function offerTolerance(host, knobs, turn) {
-  const about = toleranceNumber({
-    value: () => Number(partsOf(knobs.value)[TOLERANCE]),
-    change: (to) => turn(turned(knobs.peek(), TOLERANCE, String(to))),
-    stage: () => host,
-  });
-  offerNumber('knob', about);
+function knobRow(k, { right, turn, isLocked }) {
+  const { name, values, scale } = KNOBS[k];
+  if (scale) return null;
+  const part = () => partsOf(right())[k];
+  /** @type {() => readonly Choice<string>[]} */
+  const choices = () =>
+    values.some(({ value }) => value === part()) ? values : [...values, { value: part(), label: part() }];
+  return createSelectRow({ name, choices, value: part, change: (to) => turn(k, to), isLocked });
 }
+
+/**
+ * The best or the worst so far.
+ * @param {Try} one @param {number} k
+ * @param {{ right: () => string, turnTo: (value: string) => void, isLocked: boolean }} how
+ */
+const keptButton = ({ value, score }, k, { right, turnTo, isLocked }) =>
+  button(
+    {
+      class: 'plain',
+      disabled: isLocked,
+      'aria-pressed': () => String(value === right()),
+      press: () => turnTo(value),
+    },
+    h('span', null, ENDS[k]),
+    h('b', null, written('six', score), ', hole ', written('hole', score)),
+    h('span', { class: 'quiet' }, knobWords(value)),
+  );
 
 /**
  * The surfaces on which runs can be compared, and a lab for each: the lesson's surface, and those of the gallery.
@@ -165,22 +192,71 @@ async function surfacesOf(lab) {
   };
 }
 
-/**
- * The controls for one choice, with a value on the left and one on the right.
- * @param {WhatIf['values']} choices @param {readonly Control[]} locks
- * @param {(side: 'left' | 'right', value: string) => void} change
- */
-function createSides(choices, locks, change) {
-  const sides = /** @type {const} */ (['left', 'right']).map((side, k) => {
-    const name = k === 0 ? 'Left' : 'Right';
-    const control = createSelectRow({ name, choices, change: (value) => change(side, value) });
-    control.select.disabled = locks.includes(side);
-    return { side, ...control };
-  });
+/** The deciding figures as parts of sentences. */
+const SAID = {
+  six: (/** @type {string} */ value) => `${value} have six neighbours`,
+  hole: (/** @type {string} */ value) => `the largest hole is ${value}`,
+  pair: (/** @type {string} */ value) => `the closest pair is at ${value}`,
+};
+
+/** What is said of the sampling on the right: the comparison with the lesson's, and what each choice does. */
+function createVerdict() {
+  const said = h('div', { class: 'said', role: 'status' });
+  const reasons = h('div', { class: 'verdict' });
   return {
-    controls: sides.map(({ element }) => element),
-    follow(/** @type {Setup} */ setup) {
-      for (const { side, set } of sides) set(setup[side]);
+    said,
+    reasons,
+    clear() {
+      fill(said);
+      fill(reasons);
+    },
+    /** @param {ReturnType<Tries['compare']>} compared @param {() => boolean} isNow  whether it is still asked for */
+    async tell(compared, isNow) {
+      fill(said, h('p', { class: 'figure-status' }, 'Each choice is tried with the others put back'));
+      try {
+        const { mine, usual, harms } = await compared;
+        if (!isNow()) return;
+        fill(said, verdictWords(mine, usual));
+        const items = harms.map((one) => blameItem(mine.score, one));
+        fill(reasons, items.length > 0 ? h('ul', null, items) : null);
+      } catch (error) {
+        if (isNow()) fill(said, reasonOf(error));
+      }
     },
   };
+}
+
+/** @param {Try} mine @param {Try} usual */
+function verdictWords(mine, usual) {
+  if (mine.value === USUAL) return h('p', null, 'This is the sampling of the lesson. Change something.');
+  if (mine.score.six === null) return h('p', null, 'There are too few particles for a share of six neighbours.');
+  const verdict = verdictOf([mine.score, usual.score]);
+  if (!verdict)
+    return h(
+      'p',
+      null,
+      h('b', null, 'No difference beyond chance. '),
+      'It cannot be told apart from that of the lesson.',
+    );
+  const key = /** @type {keyof typeof SAID} */ (verdict.key);
+  const [own, other] = [mine, usual].map(({ score }) => written(key, score));
+  return h(
+    'p',
+    null,
+    h('b', null, verdict.side === 1 ? 'Worse. ' : 'Better. '),
+    `Here ${SAID[key](own)}, in the sampling of the lesson ${other}.`,
+  );
+}
+
+/** @param {Score} own @param {Awaited<ReturnType<Tries['compare']>>['harms'][number]} one */
+function blameItem(own, { k, part, usual, score, harm }) {
+  const key = /** @type {keyof typeof SAID} */ (harm ?? 'six');
+  const why = harm ? KNOBS[k].why(part) : 'It does no harm beyond chance here.';
+  return h(
+    'li',
+    null,
+    h('b', null, `${partWords(k, part)}. `),
+    h('span', { class: 'why' }, `${why} `),
+    `Put back to ${partWords(k, usual).toLowerCase()}, ${SAID[key](written(key, score))} instead of ${written(key, own)}.`,
+  );
 }

@@ -7,6 +7,7 @@ import { fill, h, uniqueId } from '../ui/dom.js';
 import { formatCount, MISSING, plural } from '../ui/format.js';
 import { download } from '../ui/share.js';
 import { loadSheet } from '../ui/sheet.js';
+import { tableOf } from '../ui/table.js';
 import sheet from './collect.css?url';
 import { choicesOf, QUESTIONS } from './questions.js';
 import { ROWS } from './score.js';
@@ -184,35 +185,19 @@ function answersOf(title, works) {
   );
   const asked = questionsOf(works.flatMap(({ answers }) => answers));
   const guessed = questionsOf(all);
-  const cell = (/** @type {string | undefined} */ words) => h('td', null, words || MISSING);
-  const table = h(
-    'table',
-    { class: 'compare' },
-    h('caption', null, 'Learners'),
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        ['Name', 'Class', ...asked, ...guessed].map((name) => h('th', { scope: 'col' }, name)),
-      ),
+  const table = tableOf({
+    class: 'compare',
+    caption: 'Learners',
+    head: ['Name', 'Class', ...asked, ...guessed],
+    rows: works.map(({ name, group, answers, predictions }) =>
+      [
+        name,
+        group,
+        ...asked.map((question) => answers.find((one) => one.question === question)?.answer),
+        ...guessed.map((question) => guessWords(predictions.find((one) => one.question === question))),
+      ].map((words) => words || MISSING),
     ),
-    h(
-      'tbody',
-      null,
-      works.map(({ name, group, answers, predictions }) =>
-        h(
-          'tr',
-          null,
-          h('th', { scope: 'row' }, name || MISSING),
-          cell(group),
-          asked.map((question) => cell(answers.find((one) => one.question === question)?.answer)),
-          guessed.map((question) => cell(guessWords(predictions.find((one) => one.question === question)))),
-        ),
-      ),
-    ),
-  );
+  });
   return [
     h('h2', null, `${title}: ${plural(works.length, 'work')}`),
     bars.length > 0 ? h('div', { class: 'guesses-box' }, bars) : null,
@@ -239,35 +224,18 @@ function runTable(works) {
   const rows = [...found.values()].sort(
     (a, b) => b.count - a.count || order.compare(String(a.run.label), String(b.run.label)),
   );
-  const table = h(
-    'table',
-    { class: 'compare' },
-    h('caption', null, 'What their runs give'),
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        ['Run', ...ROWS.map(({ name }) => name), 'Learners'].map((name) => h('th', { scope: 'col' }, name)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      rows.map(({ run, count }) =>
-        h(
-          'tr',
-          null,
-          h('th', { scope: 'row' }, String(run.label)),
-          ROWS.map(({ name, write }) => {
-            const value = run.figures?.[name];
-            return h('td', null, typeof value === 'number' ? write(value) : MISSING);
-          }),
-          h('td', null, formatCount(count)),
-        ),
-      ),
-    ),
-  );
+  const table = tableOf({
+    class: 'compare',
+    caption: 'What their runs give',
+    head: ['Run', ...ROWS.map(({ name }) => name), 'Learners'],
+    rows: rows.map(({ run, count }) => [
+      String(run.label),
+      ...ROWS.map(({ name, write }) => {
+        const value = run.figures?.[name];
+        return typeof value === 'number' ? write(value) : MISSING;
+      }),
+      formatCount(count),
+    ]),
+  });
   return scrolled('What their runs give', table);
 }

@@ -2,8 +2,8 @@
 import { clamp } from '../engine/vector.js';
 import { h, queryAll } from '../ui/dom.js';
 import { afterKey, toPlace, toValue } from '../ui/scale.js';
+import { TOLERANCES, toleranceWords } from './knobs.js';
 import { pin } from './pinned.js';
-import { TOLERANCES, toleranceWords } from './whatifs.js';
 
 /** @import { Point } from '../figures/types.js' */
 /** @import { NumberOptions } from './types.js' */

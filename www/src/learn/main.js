@@ -14,7 +14,6 @@ import { openSubject } from './lesson-lab.js';
 import { QUESTIONS } from './questions.js';
 import { keepSetup, mountStops } from './stops.js';
 import { mountTerms } from './terms.js';
-import { stopsOfBench } from './whatifs.js';
 
 const { subject, notice, parts, lab } = openSubject();
 // An assignment has other pairs, and therefore other answers, than a reader alone.
@@ -47,13 +46,8 @@ const say = (/** @type {string} */ words) => {
   notice.textContent = words;
 };
 mountStops({
-  stops: [...document.querySelectorAll('[data-stop]')].map(({ id }) => id),
-  others: stopsOfBench,
-  onBench: async (id, given) => {
-    const { open, show, setup } = await bench;
-    if (id) await open(id, given);
-    else await show(setup());
-  },
+  stops: queryAll(document, '[data-stop]').map(({ id }) => id),
+  onBench: async (given) => (await bench).open(given),
   teach,
   say: (words, place) => {
     place?.prepend(notice);

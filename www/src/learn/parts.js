@@ -1,18 +1,21 @@
 /** Controls and charts shared by several figures. */
 
-import { signal } from '@preact/signals-core';
+import { computed, signal } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
+import { algorithmList } from '../figures/algorithm.js';
+import { momentAt } from '../figures/moment.js';
+import { ALGORITHM, lineOf, tell } from '../figures/words.js';
 import { button } from '../ui/button.js';
 import { draw, floorOf, footOf, scaleOf } from '../ui/chart.js';
 import { h, reducedMotion, uniqueId } from '../ui/dom.js';
+import { formatCount } from '../ui/format.js';
 import { icon } from '../ui/icons.js';
 import { createRange } from '../ui/range.js';
 import { createSelect } from '../ui/select.js';
 
-/** @import { Signal } from '@preact/signals-core' */
 /** @import { Children, Drawn } from '../ui/types.js' */
 
-/** @import { RangeRowOptions, SelectRowOptions } from './types.js' */
+/** @import { RangeRowOptions, SelectRowOptions, StepsOptions } from './types.js' */
 
 /**
  * A range with a name and its value in words.
@@ -104,32 +107,49 @@ export function createChart({ hidden, chart, label, words, press }) {
  * @template {string} T
  * @param {SelectRowOptions<T>} about
  */
-export function createSelectRow({ name, choices, value = choices[0]?.value, change }) {
-  const id = uniqueId('select');
-  /** @type {Signal<string>} */
-  const chosen = signal(value);
-  /**
-   * Includes the value shown, even if it is not one of the choices.
-   * @type {Signal<readonly { value: string, label: string }[]>}
-   */
-  const all = signal(choices);
-  const select = createSelect({
-    choices: () => all.value,
-    value: () => chosen.value,
-    change(next) {
-      chosen.value = next;
-      change(/** @type {T} */ (next));
-    },
+export function createSelectRow({ name, isLocked = false, ...about }) {
+  const select = createSelect(about);
+  select.id = uniqueId('select');
+  select.disabled = isLocked;
+  return h('div', { class: 'select-row' }, h('label', { for: select.id }, name), select);
+}
+
+/**
+ * Steps through the events of a particle: what is told of the present one, buttons and a range, and its line of the
+ * algorithm.
+ * @param {StepsOptions} about
+ */
+export function createSteps({ name, events, first, subject, lines = ALGORITHM, beyond = () => {} }) {
+  const last = () => Math.max(0, events().length - 1);
+  // With fewer events than before the present position may no longer exist.
+  const known = (/** @type {number} */ place) => Math.min(place, last());
+  const range = createRangeRow({
+    name,
+    max: last,
+    value: first,
+    say: (place) => `${formatCount(known(place) + 1)} of ${formatCount(last() + 1)}`,
+    change() {},
   });
-  select.id = id;
+  const at = () => known(range.place.value);
+  const moment = computed(() => momentAt(events(), at()));
+  const step = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ icon) =>
+    button({
+      class: 'square',
+      icon,
+      'aria-label': label,
+      press() {
+        const to = at() + by;
+        if (to >= 0 && to <= last()) range.set(to);
+        else beyond(by);
+      },
+    });
   return {
-    element: h('div', { class: 'select-row' }, h('label', { for: id }, name), select),
-    select,
-    /** Shows a value, even if it is not one of the choices. @param {string} own @param {string} [words] */
-    set(own, words = own) {
-      if (!all.peek().some((choice) => choice.value === own)) all.value = [...choices, { value: own, label: words }];
-      chosen.value = own;
-    },
+    moment,
+    elements: [
+      h('p', { class: 'told', 'aria-live': 'polite' }, () => tell(moment.value, subject())),
+      h('div', { class: 'controls' }, step(-1, 'Step back', 'back'), step(1, 'Step forward', 'forward'), range.element),
+      h('div', { class: 'particle-lines' }, () => algorithmList(lineOf(moment.value.event, lines), lines)),
+    ],
   };
 }
 

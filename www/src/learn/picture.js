@@ -259,7 +259,7 @@ export class Picture {
     const { particles, count = particles.radii.length, body = null } = scene;
     if (this.#bedded?.scene !== scene) {
       // The body follows the discs, replacing the particles without discs.
-      const own = body ? firstOf(particles, count) : particles;
+      const own = body ? rangeOf(particles, 0, count) : particles;
       this.#bedded = { scene, depths: bedDepths(own, count, body) };
     }
     return this.#bedded.depths;
@@ -376,28 +376,6 @@ export class Picture {
   }
 }
 
-/**
- * Pictures side by side with one camera.
- * @param {Orbit} orbit @param {readonly string[]} names
- */
-export function sideBySide(orbit, names) {
-  const pictures = names.map((name) => new Picture(orbit, { name }));
-  const captions = pictures.map(() => h('figcaption'));
-  return {
-    pictures,
-    captions,
-    figures: pictures.map((picture, k) => h('figure', null, picture.element, captions[k])),
-    /**
-     * Rotates all pictures to a place, and rings it in the picture of its side.
-     * @param {ScorePlace | null} place @param {number} side
-     */
-    point(place, side) {
-      for (const [k, picture] of pictures.entries()) picture.ringed.value = k === side ? place : null;
-      if (place) orbit.turnTo(place.normal);
-    },
-  };
-}
-
 /** Length and width of an arrow's head, divided by the arrow's length. */
 const HEAD = [0.28, 0.16];
 
@@ -415,11 +393,16 @@ function drawArrow(context, [x, y], [endX, endY]) {
   context.lineWidth = 2 * FINENESS;
 }
 
-/** @param {LessonParticles} particles @param {number} count */
-const firstOf = ({ positions, normals, radii }, count) => ({
-  positions: positions.subarray(0, 3 * count),
-  normals: normals.subarray(0, 3 * count),
-  radii: radii.subarray(0, count),
+/**
+ * The particles of a run from one number on, up to another.
+ * @param {LessonParticles} all @param {number} first @param {number} [end]
+ */
+export const rangeOf = (all, first, end = all.radii.length) => ({
+  ...all,
+  positions: all.positions.subarray(3 * first, 3 * end),
+  normals: all.normals.subarray(3 * first, 3 * end),
+  radii: all.radii.subarray(first, end),
+  levels: all.levels.subarray(first, end),
 });
 
 /** @param {readonly number[]} eye @param {ArrayLike<number>} place @param {ArrayLike<number>} normal */

@@ -52,8 +52,8 @@ export const QUESTIONS = {
     ask: childrenOf,
     right: ({ added }) => added,
     words: ({ added, matched }) => [
-      `For ${formatCount(added)}: one place around B holds A, and ${formatCount(matched)} hold particles that A has placed beside B.`,
-      'The figure has done A. Now it is your turn with B.',
+      `One place around B holds A, and ${formatCount(matched)} hold particles that A has placed beside B: there is room for ${formatCount(added)}.`,
+      'In the figure B has its turn.',
     ],
   }),
   'predict-ring': one({
@@ -77,7 +77,7 @@ export const QUESTIONS = {
   }),
   'predict-hole': one({
     question:
-      'A quarter of the particles are there. Where will the widest hole open? Turn the picture and press a bare place.',
+      'A quarter of the particles are there. Where will the largest hole open? Turn the picture and press a bare place.',
     kind: 'pick',
     ask: widestHole,
     right: (widest) => widest?.particle ?? -1,
@@ -85,7 +85,7 @@ export const QUESTIONS = {
       if (!widest) return ['On this surface the rings leave no hole wide enough to count.'];
       const { placed } = widest.run;
       const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
-      const words = `The widest hole is in the ring of the picture, beside a particle of level ${placed.levels[widest.particle]} of ${last}: on a seam, where parts of the front have met and left less room than a particle needs.`;
+      const words = `The largest hole is in the ring of the picture, beside a particle of level ${placed.levels[widest.particle]} of ${last}: on a seam, where parts of the front have met and left less room than a particle needs.`;
       if (typeof guess !== 'number') return [words];
       const far = distance(triple(placed.positions, guess), widest.hole.places[0]) / (2 * widest.radius);
       return [words, `You pressed ${formatFixed(far, 1)} widths of a disc away from it.`];

@@ -1,7 +1,7 @@
 /**
  * The figures that decide between two runs, or two moments of one run; they come from the sampler's own report.
  */
-import { clamp, distance, dot, triple } from '../engine/vector.js';
+import { clamp, dot, nearest, triple } from '../engine/vector.js';
 import { formatCount, formatFixed, formatSignificant, MISSING } from '../ui/format.js';
 import { between, createGrid } from '../ui/neighbours.js';
 
@@ -73,6 +73,7 @@ export const ROWS = [
   {
     key: 'evaluations',
     name: 'Evaluations of f per particle',
+    isRare: true,
     ideal: null,
     worse: 'above',
     chance: ({ evaluations }) => 0.03 * Number(evaluations),
@@ -154,7 +155,7 @@ export const scoreAtEnd = ({ lab, end, progress, settings }) =>
  * @param {LessonParticles} particles @param {Measures['places']} places
  */
 export function placesOf({ positions, normals, radii }, { holes, pairs }) {
-  const beside = holes[0] ? nearestTo(positions, holes[0].position) : -1;
+  const beside = holes[0] ? (nearest(positions, radii.length, holes[0].position)?.index ?? -1) : -1;
   /** @type {ScorePlace | null} */
   let hole = null;
   /** @type {ScorePlace | null} */
@@ -165,16 +166,6 @@ export function placesOf({ positions, normals, radii }, { holes, pairs }) {
     pair = { places: both.map((i) => triple(positions, i)), radius: radii[both[0]], normal: triple(normals, both[0]) };
   }
   return { hole, pair, beside };
-}
-
-/** @param {ArrayLike<number>} positions @param {readonly number[]} place */
-function nearestTo(positions, place) {
-  let [best, least] = [0, Infinity];
-  for (let i = 0; 3 * i < positions.length; i += 1) {
-    const away = distance(place, triple(positions, i));
-    if (away < least) [best, least] = [i, away];
-  }
-  return best;
 }
 
 /** A figure of a score, formatted. @param {keyof ScoreFigures} key @param {Score} score */

@@ -6,14 +6,7 @@ import { fill, h } from '../ui/dom.js';
 import { MISSING } from '../ui/format.js';
 import { bestOf, chanceOf, DECIDING, ROWS, rowOf, verdictOf } from './score.js';
 
-/** @import { Score, ScoreFigures, ScorePlace, ScoreRow } from './types.js' */
-
-/**
- * @typedef {object} ScoreWords
- * @property {readonly (keyof ScoreFigures)[]} [keys]  the figures that decide, in their order
- * @property {readonly (keyof ScoreFigures)[]} [also]  rows that tables do not have else
- * @property {boolean} [isMarked]  whether it says which is better
- */
+/** @import { Score, ScorePlace, ScoreRow, ScoreWords } from './types.js' */
 
 /**
  * @param {(place: ScorePlace | null, side: number) => void} show  shows a place of the particles on a side; null: none
@@ -50,7 +43,7 @@ export function createScorecard(show) {
       pressed.value = '';
       element.ariaBusy = 'false';
       const verdict = isMarked ? verdictOf(scores, keys) : null;
-      const rows = ROWS.filter(({ key, isRare }) => !isRare || also.includes(key)).map((row) => {
+      const rows = ROWS.filter(({ key, isRare }) => !isRare || [...keys, ...also].includes(key)).map((row) => {
         // Costs are marked only if they decide, or may decide.
         const isJudged = row.ideal !== null || [...keys, ...also].includes(row.key);
         const chance = isJudged ? chanceOf(row, scores) : null;

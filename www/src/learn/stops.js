@@ -1,11 +1,12 @@
 /** Stops in the address: every chapter, question and comparison has one. */
 import { byId } from '../ui/dom.js';
-import { BENCH, nearestStop, readAddress, titleOf, writeAddress } from './address.js';
+import { BENCH, isBench, readAddress, stopFor, titleOf, writeAddress } from './address.js';
+import { whenNear } from './figure.js';
 
 /** @import { Setup, StopsOptions } from './types.js' */
 
-/** The part of the page for collecting work. */
-const COLLECT = 'collect';
+/** The part of the page for collecting work, and the element of the bench. */
+const [COLLECT, BENCH_HOST] = ['collect', 'bench'];
 /** Height of the bar at the top of the window, in pixels. */
 export const HEAD_PX = 60;
 
@@ -19,40 +20,41 @@ async function collect({ teach, say }) {
 }
 
 /** @param {StopsOptions} about */
-export function mountStops({ stops, others, onBench, teach, say }) {
-  const all = [...stops, ...others, COLLECT];
+export function mountStops({ stops, onBench, teach, say }) {
+  const all = [...stops, COLLECT];
   let isBenchShown = false;
-  const showBench = (/** @type {string} */ id, /** @type {Record<string, string>} */ parts = {}) => {
+  /** Shows the comparison in the address; without one, that which is there. @param {Record<string, string>} parts */
+  function showBench(parts) {
+    if (isBenchShown && !parts.left && !parts.right) return;
     isBenchShown = true;
-    void onBench(id, parts);
-  };
+    void onBench(parts);
+  }
 
   /** Goes to the stop in the address. */
   function go() {
     const { stop, parts } = readAddress(location.hash);
-    const found = nearestStop(stop, all);
-    if (!found) return;
-    if (!found.isExact) {
-      const nearest = document.getElementById(found.stop) ?? document.getElementById(BENCH);
-      say(`There is no stop “${stop}” in this lesson. This is the nearest, “${titleOf(nearest)}”.`, nearest);
-      history.replaceState(history.state, '', writeAddress({ stop: found.stop, parts }));
+    if (!stop) return;
+    const found = stopFor(stop, all);
+    const place = document.getElementById(found);
+    if (!place) return say(`There is no stop “${stop}” in this lesson.`);
+    if (found !== stop) {
+      say(`There is no stop “${stop}” in this lesson. This is the nearest, “${titleOf(place)}”.`, place);
+      history.replaceState(history.state, '', writeAddress({ stop: found, parts }));
     }
-    const isBench = others.includes(found.stop);
-    if (isBench) showBench(found.stop.slice(BENCH.length + 1), parts);
-    if (found.stop === COLLECT) void collect({ teach, say });
-    settleOn(document.getElementById(isBench ? BENCH : found.stop));
+    if (isBench(found)) showBench(parts);
+    if (found === COLLECT) void collect({ teach, say });
+    settleOn(place);
   }
 
   let leave = new AbortController();
   /**
    * Scrolls a stop to the top, again whenever a figure above it changes its height, until the reader acts.
-   * @param {HTMLElement | null} target
+   * @param {HTMLElement} target
    */
   function settleOn(target) {
     leave.abort();
     leave = new AbortController();
     const { signal } = leave;
-    if (!target) return;
     target.scrollIntoView({ block: 'start' });
     let isFirst = true;
     const observer = new ResizeObserver(() => {
@@ -76,7 +78,7 @@ export function mountStops({ stops, others, onBench, teach, say }) {
     if (next === location.hash) go();
     else location.hash = next;
     // The focus moves to the target, as with an anchor.
-    const target = document.getElementById(others.includes(stop) ? BENCH : stop);
+    const target = document.getElementById(stop);
     target?.setAttribute('tabindex', '-1');
     target?.focus({ preventScroll: true });
   });
@@ -84,21 +86,12 @@ export function mountStops({ stops, others, onBench, teach, say }) {
   go();
 
   // The comparison runs when it comes near the window, like figures.
-  const bench = document.getElementById(BENCH);
-  const observer = new IntersectionObserver(
-    (entries) => {
-      if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
-      observer.disconnect();
-      if (!isBenchShown) showBench('');
-    },
-    { rootMargin: '300px 0px' },
-  );
-  if (bench) observer.observe(bench);
+  const bench = document.getElementById(BENCH_HOST);
+  if (bench) whenNear(bench, async () => showBench({}));
 }
 
-/** Puts a comparison with its values into the address. @param {Setup} setup */
-export function keepSetup({ what, on, left, right }) {
+/** Puts a comparison into the address. @param {Setup} setup */
+export function keepSetup(setup) {
   const { parts } = readAddress(location.hash);
-  const address = writeAddress({ stop: `${BENCH}-${what}`, parts: { ...parts, on, left, right } });
-  history.replaceState(history.state, '', address);
+  history.replaceState(history.state, '', writeAddress({ stop: BENCH, parts: { ...parts, ...setup } }));
 }

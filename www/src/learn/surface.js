@@ -3,7 +3,7 @@ import { unpackCarried } from '../ui/surface-link.js';
 
 /**
  * @import { FormulaSurface } from '../ui/types.js'
- * @import { Subject } from './types.js'
+ * @import { OwnSurface } from './types.js'
  */
 
 /** @type {FormulaSurface} */
@@ -13,7 +13,7 @@ const ELLIPSOID = {
   bounds: { min: [-1.25, -1.05, -0.85], max: [1.25, 1.05, 0.85] },
 };
 
-/** @param {string | undefined} text  what the address carries @returns {Subject} */
+/** @param {string | undefined} text  what the address carries @returns {OwnSurface} */
 export function subjectOf(text) {
   if (text === undefined) return { surface: ELLIPSOID, isOwn: false, from: '', notice: '' };
   const carried = unpackCarried(text);

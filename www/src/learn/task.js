@@ -1,6 +1,6 @@
 /** Assignments as plain data, in a link and in a learner's file. */
 import { packed, unpacked } from '../ui/surface-link.js';
-import { setupOf, WHAT_IFS } from './whatifs.js';
+import { setupOf } from './knobs.js';
 
 /**
  * @import { Control, Task, Work } from './types.js'
@@ -15,9 +15,8 @@ const MOST_QUESTIONS = 20;
  * @type {readonly { value: Control, label: string, words: string, usual?: boolean }[]}
  */
 export const CONTROLS = [
-  { value: 'what', label: 'What changes', words: 'what is compared here', usual: true },
-  { value: 'left', label: 'Left', words: 'the picture on the left', usual: true },
-  { value: 'right', label: 'Right', words: 'the picture on the right', usual: true },
+  { value: 'on', label: 'Surface', words: 'the surface', usual: true },
+  { value: 'right', label: 'Sampling on the right', words: 'the sampling on the right' },
 ];
 
 /** Describes the locked controls to the learner; empty if none is locked. @param {readonly Control[]} locks */
@@ -37,11 +36,10 @@ export const packTask = (task) => packed(task);
 export function unpackTask(text) {
   const raw = unpacked(text);
   if (typeof raw !== 'object' || raw === null || !Array.isArray(raw.questions)) return null;
-  const whatIf = WHAT_IFS.find(({ id }) => id === raw.setup?.what);
-  if (!whatIf) return null;
+  if (typeof raw.setup !== 'object' || raw.setup === null) return null;
   return {
     title: String(raw.title ?? '').slice(0, LONGEST_TITLE),
-    setup: setupOf(whatIf.id, raw.setup),
+    setup: setupOf(raw.setup),
     locks: CONTROLS.map(({ value }) => value).filter((control) => raw.locks?.includes?.(control)),
     questions: raw.questions
       .slice(0, MOST_QUESTIONS)

@@ -2,20 +2,21 @@
 import type { LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/types.js';
 import type { LessonClient, LessonEvent, LessonParticles } from '../engine/types.js';
 import type { Palette } from '../engine/view/types.js';
-import type { Point } from '../figures/types.js';
+import type { Point, Subject } from '../figures/types.js';
+import type { ALGORITHM } from '../figures/words.js';
 import type { FormulaSurface, Scale } from '../ui/types.js';
 import type { Stops } from './answers.js';
 import type { Lab } from './lab.js';
 
 export type { Lab, Stops };
 
-/** The controls of the bench that an assignment may lock. */
-export type Control = 'what' | 'left' | 'right';
+/** The controls of the bench that an assignment may lock: the surface, and the choices on the right. */
+export type Control = 'on' | 'right';
 /**
- * The comparison on the bench. `on`: the name of a surface of the gallery; that of the lesson if it
- * is empty.
+ * The comparison on the bench: values of the choices. `on`: the name of a surface of the gallery; that of the lesson if
+ * it is empty.
  */
-export type Setup = { what: string; on: string; left: string; right: string };
+export type Setup = { on: string; left: string; right: string };
 /** One of several choices that are made at once. Its values, or the range of its numbers. */
 export interface Knob {
   name: string;
@@ -25,25 +26,16 @@ export interface Knob {
   /** what a value that is not that of the lesson does to the sampling */
   why: (value: string) => string;
 }
-/** What knobs give. */
+/** What a value of the choices gives. */
 export type Try = { value: string; run: LabRun; score: Score };
-/**
- * One choice. `make` is given a value and makes the run; the first two values are shown first. One
- * with knobs has a value for each position of them.
- */
+/** Two samplings that a card compares. */
 export interface WhatIf {
-  id: string;
-  name: string;
   /** what to look for */
   look: string;
   colouring: Colouring;
   /** a figure that decides where the samplings cannot be told apart */
   decides?: keyof ScoreFigures;
-  /** whether it is a card's alone */
-  isRare?: boolean;
-  knobs?: readonly Knob[];
-  values: readonly { value: string; label: string }[];
-  make: (lab: Lab, value: string) => Promise<LabRun>;
+  sides: readonly Side[];
 }
 export type Choices = readonly { value: string; label: string }[];
 /**
@@ -75,12 +67,13 @@ export interface Question<F> {
 }
 /** A sampling of a pair that is judged, with the name that it has once it was. */
 export type JudgedSide = { name: string; settings: Partial<LessonSettings>; isAdaptive?: boolean };
-/** `name`: of the surface. */
+/** `name`: of the surface; `isAlike`: whether the radii are chosen so that both have as many particles. */
 export type Judged = {
   surface: FormulaSurface;
   name: string;
   sides: readonly [JudgedSide, JudgedSide];
   particles: number;
+  isAlike?: boolean;
 };
 /**
  * What is said of a slot. `particle`: the one that holds it; of a new one, its number in the run.
@@ -199,8 +192,18 @@ export interface ScoreRow {
   /** a difference, if it is not written as a value */
   writeChance?: (value: number) => string;
 }
+/**
+ * What a table of two scores says. `names`: of the two, if not those below the pictures; `keys`: the figures that
+ * decide, in their order; `also`: rows that tables do not have else; `isMarked`: whether it says which is better.
+ */
+export interface ScoreWords {
+  names?: readonly string[];
+  keys?: readonly (keyof ScoreFigures)[];
+  also?: readonly (keyof ScoreFigures)[];
+  isMarked?: boolean;
+}
 /** The colouring of the two pictures. */
-export type Colouring = 'level' | 'parent' | 'nearest' | 'radius';
+export type Colouring = 'level' | 'parent' | 'nearest' | 'radius' | 'none';
 /** Discs that a picture is fitted to. */
 export type Discs = Pick<LessonParticles, 'positions' | 'radii'>;
 export type Side = { label: string; make: (lab: Lab) => Promise<LabRun> };
@@ -217,7 +220,8 @@ export type Work = {
   runs: object[];
 };
 export type Law = LessonSettings['law'];
-export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
+/** The surface of the lesson. */
+export type OwnSurface = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
 /** The input of a figure: the runs, the learner's answers, and the text from which pairs are drawn. */
 export type Context = { lab: Promise<Lab>; stops: Stops; series: string };
 /**
@@ -256,17 +260,26 @@ export interface RangeRowOptions {
 }
 export interface SelectRowOptions<T extends string> {
   name: string;
-  choices: readonly { value: T; label: string }[];
-  value?: NoInfer<T>;
+  choices: () => readonly { value: T; label: string }[];
+  value: () => NoInfer<T>;
   change: (value: T) => void;
+  isLocked?: boolean;
+}
+export interface StepsOptions {
+  name: string;
+  events: () => LessonEvent[];
+  /** number of the event that is shown first */
+  first: number;
+  subject: () => Subject;
+  lines?: typeof ALGORITHM;
+  /** steps over either end */
+  beyond?: (by: 1 | -1) => void;
 }
 export interface StopsOptions {
   /** ids of elements */
   stops: readonly string[];
-  /** stops of the bench: `what-if-…` */
-  others: readonly string[];
-  /** shows a comparison; the one that is there for an empty id */
-  onBench: (id: string, given: Record<string, string>) => Promise<void>;
+  /** shows a comparison; without values, that of the best and the worst so far */
+  onBench: (given: Partial<Setup>) => Promise<void>;
   /** loads what a class needs */
   teach: () => Promise<typeof import('./teach.js')>;
   /** says something at a stop, or at the top of the page */

@@ -125,7 +125,7 @@ export interface TableContent {
   /** an empty first word leaves the place over the names of the rows empty */
   head: readonly Child[];
   /** the first cell of a row is its name */
-  rows: readonly (readonly Child[])[];
+  rows: readonly (readonly Children[])[];
   caption?: string;
   class?: string;
 }

@@ -1,19 +1,18 @@
 /** How children of another size find room around a particle: the angles φ and τ, with a handle for each radius. */
 import { computed, signal } from '@preact/signals-core';
 import { adaptivePlane } from '../../figures/adaptive.js';
-import { algorithmList } from '../../figures/algorithm.js';
 import { polar } from '../../figures/geometry.js';
-import { momentAt } from '../../figures/moment.js';
 import { ring } from '../../figures/svg.js';
-import { ADAPTIVE, inDegrees, lineOf, tell } from '../../figures/words.js';
-import { button } from '../../ui/button.js';
+import { ADAPTIVE, inDegrees } from '../../figures/words.js';
 import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed } from '../../ui/format.js';
 import { loadSheet } from '../../ui/sheet.js';
 import { createNumber, dragIn } from '../drag.js';
-import { createRangeRow, facts } from '../parts.js';
+import { createSteps, facts } from '../parts.js';
 import sheet from '../plane.css?url';
 import { roomEvents, takenAngle } from '../room.js';
+
+/** @import { Moment } from '../../figures/types.js' */
 
 /** Limits of the two radii, in any unit, since only their ratio matters. */
 const SCALE = { min: 0.5, max: 1.25, step: 0.01 };
@@ -43,28 +42,13 @@ export async function angles() {
         radius.value = value;
       },
     });
-  const at = signal(OPENS_AT);
-  const last = () => events.value.length - 1;
-  const range = createRangeRow({
+  const { moment, elements } = createSteps({
     name: 'Step',
-    max: last,
-    say: () => `${formatCount(Math.min(at.value, last()) + 1)} of ${formatCount(last() + 1)}`,
-    change(to) {
-      at.value = to;
-    },
+    events: () => events.value,
+    first: OPENS_AT,
+    subject: () => ({ particle: 0, level: 0, parent: null, radius: own.value }),
+    lines: ADAPTIVE,
   });
-  // With fewer events the current position may no longer exist.
-  live(range.input, () => {
-    range.place.value = Math.min(at.value, last());
-  });
-  const moment = computed(() => momentAt(events.value, Math.min(at.value, last())));
-  const step = (/** @type {-1 | 1} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ sign) =>
-    button({
-      icon: sign,
-      'aria-label': label,
-      press: () => range.set(Math.max(0, Math.min(last(), range.get() + by))),
-    });
-
   live(box, () => fill(box, drawingOf(own.value, other.value, moment.value)));
   let held = own;
   dragIn(box, ([x, y], isFirst) => {
@@ -85,11 +69,7 @@ export async function angles() {
       handle('Radius of the others', other),
       () => `: together the two give each the angle φ = ${inDegrees(takenAngle(own.value, other.value), 1)}.`,
     ),
-    h('p', { class: 'told', 'aria-live': 'polite' }, () =>
-      tell(moment.value, { particle: 0, level: 0, parent: null, radius: own.value }),
-    ),
-    h('div', { class: 'controls' }, step(-1, 'Step back', 'back'), step(1, 'Step forward', 'forward'), range.element),
-    h('div', { class: 'particle-lines' }, () => algorithmList(lineOf(moment.value.event, ADAPTIVE), ADAPTIVE)),
+    elements,
     h('div', null, () => {
       const placed = events.value.filter((event) => event.type === 'fate' && event.fate === 'added').length;
       return facts([
@@ -101,7 +81,7 @@ export async function angles() {
   return [h('div', { class: 'two room' }, box, host)];
 }
 
-/** @param {number} own @param {number} other @param {ReturnType<typeof momentAt>} moment */
+/** @param {number} own @param {number} other @param {Moment} moment */
 function drawingOf(own, other, moment) {
   const positions = Float32Array.of(0, 0, 0, own + other, 0, 0);
   const svg = adaptivePlane(

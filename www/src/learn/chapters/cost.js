@@ -1,6 +1,7 @@
 /** The cost of placing, of relaxing and of the other method, in evaluations, pushes and rounds. */
 import { h } from '../../ui/dom.js';
 import { formatCount, formatSignificant } from '../../ui/format.js';
+import { tableOf } from '../../ui/table.js';
 import { costOf } from '../measure.js';
 
 /** @import { Context } from '../types.js' */
@@ -15,39 +16,16 @@ export async function cost({ lab, stops }) {
   ]);
   const most = kinds.map(([kind]) => Math.max(1e-9, ...rows.map((row) => row[kind])));
   const isOpen = () => stops.isOpen('predict-cost');
-  const cell = (/** @type {number} */ value, /** @type {number} */ of) =>
-    h(
-      'td',
-      null,
-      h('span', { class: 'cost-number' }, () => (isOpen() ? formatSignificant(value, 3) : '?')),
-      h('span', { class: 'cost-bar', style: { width: () => `${isOpen() ? (100 * value) / of : 0}%` } }),
-    );
-  const table = h(
-    'table',
-    { class: 'cost' },
-    h('caption', null, `Here: ${formatCount(particles)} particles of the front, ${formatCount(others)} of the system`),
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        h('td'),
-        kinds.map(([, name]) => h('th', { scope: 'col' }, name)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      rows.map((row) =>
-        h(
-          'tr',
-          null,
-          h('th', { scope: 'row' }, row.name),
-          kinds.map(([kind], k) => cell(row[kind], most[k])),
-        ),
-      ),
-    ),
-  );
-  return [table];
+  const cell = (/** @type {number} */ value, /** @type {number} */ of) => [
+    h('span', { class: 'cost-number' }, () => (isOpen() ? formatSignificant(value, 3) : '?')),
+    h('span', { class: 'cost-bar', style: { width: () => `${isOpen() ? (100 * value) / of : 0}%` } }),
+  ];
+  return [
+    tableOf({
+      class: 'cost',
+      caption: `Here: ${formatCount(particles)} particles of the front, ${formatCount(others)} of the system`,
+      head: ['', ...kinds.map(([, name]) => name)],
+      rows: rows.map((row) => [row.name, ...kinds.map(([kind], k) => cell(row[kind], most[k]))]),
+    }),
+  ];
 }

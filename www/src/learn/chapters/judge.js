@@ -4,67 +4,43 @@
  */
 import { signal } from '@preact/signals-core';
 import { button } from '../../ui/button.js';
-import { fill, h, live } from '../../ui/dom.js';
+import { fill, h } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { mountQuestion, seenOf } from '../ask.js';
 import { reasonOf } from '../figure.js';
 import { createMarkKey } from '../marks.js';
-import { isClosed } from '../measure.js';
-import { drawable, drawn, FIGURES, OPENING, questionOf, runsOf, scoresOf } from '../pairs.js';
-import { byNeighbours, byValue, Orbit, sideBySide } from '../picture.js';
-import { createScorecard } from '../scorecard.js';
+import { createPair } from '../pair.js';
+import { drawable, drawn, FIGURES, OPENING, questionOf, runsOf, scoreAlike } from '../pairs.js';
 
-/** @import { Context, Judged, Lab, Score, ScoreFigures, Stops } from '../types.js' */
+/** @import { Context, Judged, Lab, ScoreFigures, Stops } from '../types.js' */
 
 const LETTERS = ['A', 'B'];
 /** Names under which the number of pairs, and the current pair, are stored. */
 const [COUNT, AT] = ['judge-count', 'judge-at'];
 
 /** The pair at the beginning, judged by eye. @param {Context} context */
-export const opening = async ({ lab, stops }) => picturesOf(await lab, OPENING, { stops, id: 'predict-first' });
+export const opening = async ({ lab, stops }) => [await pairOf(await lab, OPENING, { stops, id: 'predict-first' })];
 
 /**
- * The pictures of a pair, and its figures if there is a purpose.
- * @param {Lab} lab @param {Judged} pair
+ * The pictures of a pair, and its figures if there is a purpose. Names and marks come with the answer.
+ * @param {Lab} lab @param {Judged} judged
  * @param {{ stops: Stops, id: string, key?: keyof ScoreFigures }} how  `id`: of the question; `key`: the
  *   figure that the purpose needs
  */
-async function picturesOf(lab, pair, { stops, id, key }) {
-  const runs = await runsOf(lab, pair);
-  const orbit = new Orbit();
-  const { pictures, captions, figures, point } = sideBySide(
-    orbit,
-    LETTERS.map((letter) => `Sampling ${letter}; both turn together`),
-  );
-  orbit.fitTo(runs[0].end, runs[1].end);
-  orbit.faceFront(runs[0].placed);
+async function pairOf(lab, judged, { stops, id, key }) {
+  // If one of the runs fails, the still stays.
+  const runs = await runsOf(lab, judged);
   const isOpen = () => stops.isOpen(id);
-  /** @type {import('../../engine/types.js').Signal<readonly Score[]>} */
-  const scores = signal([]);
-  const scorecard = createScorecard(point);
-  const box = h('div', { hidden: () => !key || !(isOpen() || stops.isOpen(seenOf(id))) }, scorecard.element);
-  live(box, () => {
-    const now = isOpen();
-    const names = LETTERS.map((letter, k) => (now ? `${letter}, ${pair.sides[k].name}` : letter));
-    for (const [k, run] of runs.entries()) {
-      const { end } = run;
-      captions[k].textContent = names[k];
-      const score = scores.value[k];
-      // A single colour, which tells nothing about the method.
-      const plain = byValue(new Float32Array(end.radii.length).fill(1), 0, 2);
-      const colours = now && score ? byNeighbours(score.valence) : plain;
-      pictures[k].show({ particles: end, isClosed: isClosed(run), colours });
-    }
-    const also = /** @type {(keyof ScoreFigures)[]} */ (FIGURES.map(({ value }) => value));
-    if (key && scores.value.length > 0) scorecard.tell(names, scores.value, { isMarked: now, keys: [key], also });
+  const also = /** @type {(keyof ScoreFigures)[]} */ (FIGURES.map(({ value }) => value));
+  const pair = createPair(isOpen, createMarkKey({ hidden: () => !isOpen() }));
+  void pair.show({
+    make: async () => runs,
+    labels: () => LETTERS.map((letter, k) => (isOpen() ? `${letter}, ${judged.sides[k].name}` : letter)),
+    card: () =>
+      key && (isOpen() || stops.isOpen(seenOf(id))) ? { names: LETTERS, isMarked: isOpen(), keys: [key], also } : null,
+    score: scoreAlike,
   });
-  scoresOf(lab, pair).then(
-    (found) => {
-      scores.value = found;
-    },
-    (error) => box.append(h('p', { class: 'figure-status' }, reasonOf(error))),
-  );
-  return [h('div', { class: 'pair' }, figures), createMarkKey({ hidden: () => !isOpen() }), box];
+  return pair.element;
 }
 
 /** Random pairs, one after the other, on request. @param {Context} context */
@@ -83,8 +59,8 @@ export async function draws({ lab, stops, series }) {
     try {
       const found = await drawn(own, drawable(await own.gallery()), series, number);
       const id = idOf(number);
-      const pictures = await picturesOf(own, found.pair, { stops, id, key: found.purpose.key });
-      const host = h('div', { class: 'predict', id }, h('div', { class: 'stage stage-pair' }, pictures));
+      const pair = await pairOf(own, found.pair, { stops, id, key: found.purpose.key });
+      const host = h('div', { class: 'predict', id }, h('div', { class: 'stage stage-pair' }, pair));
       mountQuestion(host, id, questionOf(found), { lab, stops });
       fill(place, host);
       at.value = number;

@@ -1,13 +1,10 @@
 /** One particle within the front, event by event. */
-import { computed, signal } from '@preact/signals-core';
+import { signal } from '@preact/signals-core';
 import { nearest } from '../../engine/vector.js';
-import { algorithmList } from '../../figures/algorithm.js';
 import { asideWords, isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
-import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
-import { FATES, inRadii, lineOf, tell } from '../../figures/words.js';
-import { button } from '../../ui/button.js';
+import { FATES, inRadii } from '../../figures/words.js';
 import { fill, h, queryAll, s } from '../../ui/dom.js';
 import { formatCount, MISSING, plural } from '../../ui/format.js';
 import { loadSheet } from '../../ui/sheet.js';
@@ -16,7 +13,7 @@ import { readAddress } from '../address.js';
 import { offerNumber, toleranceNumber } from '../drag.js';
 import { reasonOf } from '../figure.js';
 import { latest } from '../latest.js';
-import { createRangeRow, facts } from '../parts.js';
+import { createSteps, facts } from '../parts.js';
 import sheet from '../plane.css?url';
 
 /**
@@ -52,46 +49,21 @@ function keyOf({ events }) {
  */
 function viewsOf(opened, { at, go }) {
   const { events, subject } = opened;
-  const last = events.length - 1;
-  const range = createRangeRow({
+  const { moment, elements } = createSteps({
     name: 'Event',
-    max: Math.max(0, last),
-    value: at < 0 ? last : at,
-    say: (to) => `${formatCount(to + 1)} of ${formatCount(last + 1)}`,
-    change() {},
+    events: () => events,
+    first: at < 0 ? events.length - 1 : at,
+    subject: () => subject,
+    beyond: go,
   });
-  const moment = computed(() => momentAt(events, Math.min(range.place.value, last)));
-  const step = (/** @type {1 | -1} */ by) => {
-    const to = range.get() + by;
-    if (to >= 0 && to <= last) range.set(to);
-    else go(by);
-  };
-  const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ icon) =>
-    button({ class: 'square', icon, 'aria-label': label, press: () => step(by) });
   const parent = subject.parent === null ? 'a seed' : `child of particle ${formatCount(subject.parent)}`;
+  const name = `Particle ${formatCount(subject.particle)} on level ${formatCount(subject.level)}, ${parent}.`;
   return [
     h(
       'div',
       { class: 'two' },
       h('div', { class: 'drawing-box' }, () => tangentPlane(opened, moment.value)),
-      h(
-        'div',
-        { class: 'side' },
-        h(
-          'p',
-          { class: 'quiet' },
-          `Particle ${formatCount(subject.particle)} on level ${formatCount(subject.level)}, ${parent}.`,
-        ),
-        h('p', { class: 'told', 'aria-live': 'polite' }, () => tell(moment.value, subject)),
-        h(
-          'div',
-          { class: 'controls' },
-          turn(-1, 'Step back', 'back'),
-          turn(1, 'Step forward', 'forward'),
-          range.element,
-        ),
-        h('div', { class: 'particle-lines' }, () => algorithmList(lineOf(moment.value.event))),
-      ),
+      h('div', { class: 'side' }, h('p', { class: 'quiet' }, name), elements),
     ),
     h('div', { class: 'two', hidden: () => profileAt(opened, moment.value) === null }, () =>
       sideOf(opened, moment.value),

@@ -2,7 +2,7 @@
  * The learner plays the algorithm: slot by slot they make the run's decisions, for two particles of a plane and for the
  * place on a cap where the front meets itself. The run objects to a different decision.
  */
-import { signal } from '@preact/signals-core';
+import { computed, signal } from '@preact/signals-core';
 import { triple } from '../../engine/vector.js';
 import { algorithmList } from '../../figures/algorithm.js';
 import { tangentPlane } from '../../figures/drawings.js';
@@ -11,7 +11,7 @@ import { momentAt } from '../../figures/moment.js';
 import { fateShape } from '../../figures/svg.js';
 import { tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
-import { fill, h, live, s } from '../../ui/dom.js';
+import { h, live, s } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { createSelect } from '../../ui/select.js';
 import { loadSheet } from '../../ui/sheet.js';
@@ -22,10 +22,13 @@ import sheet from '../plane.css?url';
  * @import { Signal } from '../../engine/types.js'
  * @import { Choice } from '../../ui/types.js'
  * @import { Moment, Opened, Point } from '../../figures/types.js'
- * @import { Context, Decision, LabRun, Patch, Stops, Verdict } from '../types.js'
+ * @import { Context, Decision, Patch, Stops, Verdict } from '../types.js'
  */
 
-/** @typedef {{ opened: Opened, decisions: Decision[], at: number, moment: Moment }} Shown */
+/**
+ * A slot to decide. `near`: the particles that may be there.
+ * @typedef {{ opened: Opened, decision: Decision, moment: Moment, near: readonly Choice<number>[] }} Turn
+ */
 
 /** The shapes of a child's fates. */
 const SHAPES = [
@@ -40,7 +43,7 @@ export async function plane(context) {
   await loadSheet(sheet);
   const chosen = signal(0);
   const place = h('div', { class: 'plane-box' });
-  /** @type {Map<number, Exercise>} */
+  /** @type {Map<number, ReturnType<typeof createExercise>>} */
   const made = new Map();
   async function choose(/** @type {number} */ k) {
     const exercise = made.get(k) ?? (await begin(context, PATCHES[k], () => void choose(k + 1)));
@@ -73,266 +76,202 @@ export async function plane(context) {
 /** @param {Context} context @param {Patch} patch @param {() => void} goOn */
 async function begin({ lab, stops }, patch, goOn) {
   const run = await runOn(await lab, patch);
-  const treated = await treatedOf(run, patch);
-  const exercise = new Exercise(patch, { run, treated, stops, goOn });
-  await exercise.take();
-  return exercise;
+  /** @type {Turn[]} */
+  const turns = [];
+  try {
+    for (const particle of await treatedOf(run, patch)) turns.push(...turnsOf(await openNamed(run, particle)));
+  } finally {
+    run.client.close();
+  }
+  return createExercise(patch, { turns, stops, goOn });
 }
 
-/** One patch, decided slot by slot. */
-class Exercise {
-  #patch;
-  #run;
-  #treated;
-  #stops;
-  #box = h('div', { class: 'drawing-box plane-drawing', on: { click: (event) => this.#press(event) } });
-  /** The algorithm, shown after it was played. */
-  #lines = h('div', { class: 'plane-lines', hidden: true });
-  #question = h('p', { class: 'plane-question', 'aria-live': 'polite' });
-  #told = h('p', { class: 'told', role: 'status' });
-  #score = h('p', { class: 'figure-count' });
-  /** Neighbours that may be the matching particle. @type {Signal<readonly Choice<number>[]>} */
-  #near = signal([]);
-  #which = createSelect({ name: 'The particle that is there', choices: () => this.#near.value });
-  #matched = button({ press: () => this.#meet() }, 'It is there already:');
-  #answers;
-  #next;
-  #back;
-  /** @type {Round} */
-  #round;
-  /** Jobs that take time run one after the other. */
-  #last = Promise.resolve();
-  /** The current slot. @type {Shown | null} */
-  #now = null;
+/** @param {Opened} opened @returns {Turn[]} */
+function turnsOf(opened) {
+  const decisions = decisionsOf(opened.events);
+  const { gathered = null } = decisions[0] ? momentAt(opened.events, decisions[0].at) : {};
+  const near = (gathered?.neighbours ?? []).map(({ particle }) => ({
+    value: particle,
+    label: `particle ${letterOf(particle)}`,
+  }));
+  return decisions.map((decision) => {
+    const moment = { ...momentAt(opened.events, decision.at), slot: decision.slot, isNow: true };
+    return { opened, decision, moment, near };
+  });
+}
 
-  /** @param {Patch} patch @param {{ run: LabRun, treated: number[], stops: Stops, goOn: () => void }} about */
-  constructor(patch, { run, treated, stops, goOn }) {
-    this.#patch = patch;
-    this.#run = run;
-    this.#treated = treated;
-    this.#stops = stops;
-    this.#round = stops.more(stopOf(patch)) ?? newRound();
-    this.#answers = h(
-      'div',
-      { class: 'controls' },
-      button({ press: () => this.#decide({ fate: 'added', particle: null }) }, 'A new one'),
-      h('span', { class: 'plane-match' }, this.#matched, this.#which),
-      button({ class: 'plain', press: () => this.#queue(() => this.#leave(1)) }, 'Let the run decide'),
-    );
-    this.#next = button({ class: 'primary', hidden: true, press: goOn }, 'Go to the cap');
-    this.#back = button({ class: 'plain', press: () => this.#queue(() => this.#takeBack()) }, 'One slot back');
-    const again = button({ class: 'plain', press: () => this.#queue(() => this.#beginAgain()) }, 'Begin again');
-    this.element = h(
-      'div',
-      { class: 'plane' },
-      this.#question,
-      this.#box,
-      h(
-        'div',
-        { class: 'side' },
-        this.#answers,
-        this.#told,
-        this.#next,
-        h('div', { class: 'controls plane-score' }, this.#score, this.#back, again),
-        this.#lines,
-      ),
-    );
+/**
+ * One patch, decided slot by slot.
+ * @param {Patch} patch @param {{ turns: readonly Turn[], stops: Stops, goOn: () => void }} about
+ */
+function createExercise(patch, { turns, stops, goOn }) {
+  const kept = stops.more(stopOf(patch)) ?? {};
+  /** Who has decided each slot so far. @type {Signal<readonly ('right' | 'left')[]>} */
+  const answers = signal(kept.answers ?? []);
+  /** They stay counted when one goes back. @type {Signal<readonly string[]>} */
+  const mistakes = signal(kept.mistakes ?? []);
+  const told = signal({ state: '', words: '' });
+  const now = computed(() => turns[answers.value.length] ?? null);
+  const particles = [...new Set(turns.map(({ opened }) => opened))];
+  const score = () => scoreOf(answers.value, mistakes.value);
+
+  /** @param {readonly ('right' | 'left')[]} next @param {string} [words] */
+  function go(next, words = '') {
+    answers.value = next;
+    told.value = { state: words && 'right', words };
+    keep();
   }
 
-  /** Runs a job after the current one. @param {() => Promise<unknown>} job */
-  #queue(job) {
-    this.#last = this.#last.then(job, job).then(() => {});
-  }
-
-  /** Lets the run decide for the seed, if it is the seed's turn. */
-  leaveSeed() {
-    this.#queue(async () => {
-      if (this.#now?.opened.subject.particle !== 0) return;
-      await this.#leave(Infinity);
-      this.#tell('', '');
-    });
-  }
-
-  /** Shows the current slot of the round, or its end. */
-  async take() {
-    const { turn, at } = this.#round;
-    const isOver = turn >= this.#treated.length;
-    const opened = await openNamed(this.#run, this.#treated[isOver ? turn - 1 : turn]);
-    const decisions = decisionsOf(opened.events);
-    this.#now = { opened, decisions, at, moment: momentAt(opened.events, 0) };
-    if (isOver) this.#end(this.#now);
-    else this.#ask(this.#now);
-    this.#count();
-  }
-
-  /** Undoes all decisions; mistakes still count. */
-  async #beginAgain() {
-    this.#round = { ...newRound(), mistakes: this.#round.mistakes };
-    this.#tell('', '');
-    await this.take();
-  }
-
-  /** Goes back to the last decided slot; mistakes still count. */
-  async #takeBack() {
-    const past = this.#round.past.pop();
-    if (!past) return;
-    Object.assign(this.#round, past);
-    this.#tell('', '');
-    await this.take();
-  }
-
-  /** Shows the slot to decide. @param {Shown} now */
-  #ask(now) {
-    const { opened, decisions, at } = now;
-    const { slot, at: event } = decisions[at];
-    now.moment = { ...momentAt(opened.events, event), slot, isNow: true };
-    fill(this.#box, tangentPlane(opened, now.moment));
-    this.#question.textContent = `Particle ${letterOf(opened.subject.particle)}, slot ${slot}: is a new one put here?`;
-    const near = now.moment.gathered?.neighbours.map(({ particle }) => particle) ?? [];
-    if (at === 0 || this.#which.options.length === 0)
-      this.#near.value = near.map((particle) => ({ value: particle, label: `particle ${letterOf(particle)}` }));
-    this.#matched.disabled = near.length === 0;
-    this.#which.disabled = near.length === 0;
-    this.#answers.hidden = false;
-    this.#lines.hidden = true;
-    this.#next.hidden = true;
-  }
-
-  /** Writes the score, for an assignment too, and stores the round. */
-  #count() {
-    const { turn, past, mistakes, right, left } = this.#round;
-    const treated = formatCount(Math.min(turn + 1, this.#treated.length));
-    this.#back.hidden = past.length === 0;
-    const score = scoreOf(this.#round);
-    this.#score.textContent = `${[`Particle ${treated} of ${formatCount(this.#treated.length)}`, ...score].join(' · ')}.`;
-    const stop = stopOf(this.#patch);
-    // Without a decision there is no answer.
-    if (right + left + mistakes.length === 0) return;
-    this.#stops.keepMore(stop, this.#round);
-    const question = `${this.#patch.name}, slot by slot: number of mistakes`;
-    this.#stops.record({ stop, question, guess: mistakes.length, answer: [...score, ...mistakes].join('; ') });
-  }
-
-  /** Continues with the next slot or particle. @param {string} words */
-  async #goOn(words) {
-    const now = this.#now;
-    if (!now) return;
-    this.#tell('right', words);
-    this.#round.at += 1;
-    if (this.#round.at === now.decisions.length) Object.assign(this.#round, { turn: this.#round.turn + 1, at: 0 });
-    await this.take();
-  }
-
-  /** @param {Shown} now */
-  #end({ opened }) {
-    this.#answers.hidden = true;
-    this.#next.hidden = this.#patch === PATCHES.at(-1);
-    fill(this.#box, tangentPlane(opened, momentAt(opened.events, opened.events.length - 1)));
-    // The code follows the steps that it describes.
-    this.#lines.hidden = this.#patch !== PATCHES.at(-1);
-    fill(this.#lines, h('p', null, 'What you have done, as the paper writes it:'), algorithmList(-1));
-    this.#question.textContent = this.#patch.ends;
-  }
-
-  /** @param {string} state @param {string} words */
-  #tell(state, words) {
-    this.#told.dataset.state = state;
-    this.#told.textContent = words;
-  }
-
-  /** The position in the round. */
-  #place() {
-    const { turn, at, right, left } = this.#round;
-    return { turn, at, right, left };
+  /** Stores the round, for an assignment too. */
+  function keep() {
+    const said = mistakes.peek();
+    stops.keepMore(stopOf(patch), { answers: answers.peek(), mistakes: said });
+    const question = `${patch.name}, slot by slot: number of mistakes`;
+    stops.record({ stop: stopOf(patch), question, guess: said.length, answer: [...score(), ...said].join('; ') });
   }
 
   /** @param {Verdict} said */
-  #decide(said) {
-    const now = this.#now;
-    if (!now || this.#answers.inert || this.#answers.hidden) return;
-    const { opened } = now;
-    const decision = now.decisions[now.at];
+  function decide(said) {
+    const turn = now.peek();
+    if (!turn) return;
+    const { opened, decision } = turn;
     const why = objection(opened, decision, said);
-    if (!why) {
-      this.#queue(async () => {
-        this.#round.past.push(this.#place());
-        this.#round.right += 1;
-        await this.#goOn(wordsOf(opened, decision));
-      });
-      return;
-    }
+    if (!why) return go([...answers.peek(), 'right'], wordsOf(turn));
     const other = said.fate === 'matched' ? ` with ${letterOf(said.particle ?? 0)}` : '';
-    this.#round.mistakes.push(
-      `particle ${letterOf(opened.subject.particle)}, slot ${decision.slot}: said ${said.fate}${other}`,
-    );
-    this.#tell('wrong', `The run objects. ${why}`);
-    this.#count();
+    const mistake = `particle ${letterOf(opened.subject.particle)}, slot ${decision.slot}: said ${said.fate}${other}`;
+    mistakes.value = [...mistakes.peek(), mistake];
+    told.value = { state: 'wrong', words: `The run objects. ${why}` };
+    keep();
   }
 
-  #meet() {
-    this.#decide({ fate: 'matched', particle: Number(this.#which.value) });
+  function leave() {
+    const turn = now.peek();
+    if (turn) go([...answers.peek(), 'left'], wordsOf(turn));
   }
 
-  /** Lets the run decide some slots of a particle. @param {number} most */
-  async #leave(most) {
-    const { turn } = this.#round;
-    for (let slots = 0; slots < most && this.#now && this.#round.turn === turn && !this.#answers.hidden; slots += 1) {
-      const { opened, decisions, at } = this.#now;
-      this.#round.past.push(this.#place());
-      this.#round.left += 1;
-      await this.#goOn(wordsOf(opened, decisions[at]));
-    }
+  /** @param {MouseEvent} event */
+  function press(event) {
+    const turn = now.peek();
+    const matrix = box.querySelector('svg')?.getScreenCTM()?.inverse();
+    if (!turn || !matrix) return;
+    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix);
+    const said = pressed(turn, [x, -y]);
+    if (typeof said === 'string') told.value = { state: '', words: said };
+    else decide(said);
   }
 
-  /** Decides by a press on the drawing: on a particle or the slot. @param {MouseEvent} event */
-  #press({ clientX, clientY }) {
-    const now = this.#now;
-    const matrix = this.#box.querySelector('svg')?.getScreenCTM()?.inverse();
-    const { frame = null, gathered = null } = now?.moment ?? {};
-    if (!now || !matrix || !frame || this.#answers.hidden) return;
-    const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix);
-    const { opened } = now;
-    const at = { centre: opened.place, right: frame.u, up: frame.w, radius: opened.subject.radius };
-    const { slot } = now.decisions[now.at];
-    // A press on the middle particle decides nothing.
-    if (Math.hypot(x, y) < 1) return this.#tell('', `That is particle ${letterOf(opened.subject.particle)} itself.`);
-    // A press on a particle's disc means the particle; the slot is the rest of its circle.
-    const near = { particle: -1, far: 1 };
-    for (const { particle } of gathered?.neighbours ?? []) {
-      const far = farFrom([x, -y], inPlane(at, triple(opened.positions, particle)));
-      if (far < near.far) Object.assign(near, { particle, far });
-    }
-    if (near.particle >= 0) this.#decide({ fate: 'matched', particle: near.particle });
-    else if (farFrom([x, -y], slotPlace(slot)) < 1) this.#decide({ fate: 'added', particle: null });
-    else this.#tell('', `Slot ${slot} comes now. Press its circle for a new particle, or the particle that is there.`);
-  }
+  const box = h('div', { class: 'drawing-box plane-drawing', on: { click: press } }, () => drawingOf(now.value, turns));
+  const isOver = () => now.value === null;
+  const isLast = patch === PATCHES.at(-1);
+  const element = h(
+    'div',
+    { class: 'plane' },
+    h('p', { class: 'plane-question', 'aria-live': 'polite' }, () => (now.value ? asking(now.value) : patch.ends)),
+    box,
+    h(
+      'div',
+      { class: 'side' },
+      answersOf({ now: () => now.value, decide, leave }),
+      h('p', { class: 'told', role: 'status', data: { state: () => told.value.state } }, () => told.value.words),
+      button({ class: 'primary', hidden: () => !isOver() || isLast, press: goOn }, 'Go to the cap'),
+      h(
+        'div',
+        { class: 'controls plane-score' },
+        h('p', { class: 'figure-count' }, () => {
+          const at = particles.indexOf((now.value ?? turns[turns.length - 1]).opened);
+          const treated = `Particle ${formatCount(at + 1)} of ${formatCount(particles.length)}`;
+          return `${[treated, ...score()].join(' · ')}.`;
+        }),
+        button(
+          { class: 'plain', hidden: () => answers.value.length === 0, press: () => go(answers.peek().slice(0, -1)) },
+          'One slot back',
+        ),
+        button({ class: 'plain', press: () => go([]) }, 'Begin again'),
+      ),
+      // The code follows the steps that it describes.
+      isLast &&
+        h(
+          'div',
+          { class: 'plane-lines', hidden: () => !isOver() },
+          h('p', null, 'What you have done, as the paper writes it:'),
+          algorithmList(-1),
+        ),
+    ),
+  );
+  return {
+    element,
+    /** Lets the run decide for the seed, if it is the seed's turn. */
+    leaveSeed() {
+      if (now.peek()?.opened !== particles[0]) return;
+      const rest = turns.filter(({ opened }) => opened === particles[0]).slice(answers.peek().length);
+      go([...answers.peek(), ...rest.map(() => /** @type {const} */ ('left'))]);
+    },
+  };
+}
+
+/**
+ * The answers to choose from.
+ * @param {{ now: () => Turn | null, decide: (said: Verdict) => void, leave: () => void }} how
+ */
+function answersOf({ now, decide, leave }) {
+  const which = createSelect({ name: 'The particle that is there', choices: () => now()?.near ?? NOBODY });
+  const isAlone = () => (now()?.near ?? NOBODY).length === 0;
+  live(which, () => {
+    which.disabled = isAlone();
+  });
+  const meet = () => decide({ fate: 'matched', particle: Number(which.value) });
+  return h(
+    'div',
+    { class: 'controls', hidden: () => now() === null },
+    button({ press: () => decide({ fate: 'added', particle: null }) }, 'A new one'),
+    h('span', { class: 'plane-match' }, button({ disabled: isAlone, press: meet }, 'It is there already:'), which),
+    button({ class: 'plain', press: leave }, 'Let the run decide'),
+  );
+}
+
+/** @type {readonly Choice<number>[]} */
+const NOBODY = [];
+
+/** @param {Turn} turn */
+const asking = ({ opened: { subject }, decision: { slot } }) =>
+  `Particle ${letterOf(subject.particle)}, slot ${slot}: is a new one put here?`;
+
+/** The drawing of a slot, or that of the end. @param {Turn | null} turn @param {readonly Turn[]} turns */
+function drawingOf(turn, turns) {
+  if (turn) return tangentPlane(turn.opened, turn.moment);
+  const { opened } = turns[turns.length - 1];
+  return tangentPlane(opened, momentAt(opened.events, opened.events.length - 1));
+}
+
+/**
+ * What a press on the drawing says: of a particle or the slot; else words.
+ * @param {Turn} turn @param {Point} at @returns {Verdict | string}
+ */
+function pressed({ opened, decision: { slot }, moment: { frame }, near }, at) {
+  // A press on the middle particle decides nothing.
+  if (Math.hypot(...at) < 1) return `That is particle ${letterOf(opened.subject.particle)} itself.`;
+  if (!frame) return '';
+  const plane = { centre: opened.place, right: frame.u, up: frame.w, radius: opened.subject.radius };
+  // A press on a particle's disc means the particle; the slot is the rest of its circle.
+  const far = near.map(({ value }) => farFrom(at, inPlane(plane, triple(opened.positions, value))));
+  const least = Math.min(1, ...far);
+  if (least < 1) return { fate: 'matched', particle: near[far.indexOf(least)].value };
+  if (farFrom(at, slotPlace(slot)) < 1) return { fate: 'added', particle: null };
+  return `Slot ${slot} comes now. Press its circle for a new particle, or the particle that is there.`;
 }
 
 /** @param {Patch} patch */
 const stopOf = ({ id }) => `plane-${id}`;
 
-/**
- * A round: `turn` and `at` are the next particle and slot, and `past` has the positions of all decisions.
- * @typedef {object} Round
- * @property {number} turn
- * @property {number} at
- * @property {number} right
- * @property {number} left
- * @property {string[]} mistakes
- * @property {{ turn: number, at: number, right: number, left: number }[]} past
- */
-
-/** @returns {Round} */
-const newRound = () => ({ turn: 0, at: 0, right: 0, left: 0, mistakes: [], past: [] });
-
-/** @param {Round} round */
-function scoreOf({ mistakes, right, left }) {
-  const parts = [plural(mistakes.length, 'mistake'), `${plural(right, 'slot')} decided`];
+/** @param {readonly ('right' | 'left')[]} answers @param {readonly string[]} mistakes */
+function scoreOf(answers, mistakes) {
+  const left = answers.filter((by) => by === 'left').length;
+  const parts = [plural(mistakes.length, 'mistake'), `${plural(answers.length - left, 'slot')} decided`];
   return left > 0 ? [...parts, `${formatCount(left)} left to the run`] : parts;
 }
 
-/** What the run says about its decision. @param {Opened} opened @param {Decision} decision */
-function wordsOf({ events, subject }, { end, met }) {
+/** What the run says about its decision. @param {Turn} turn */
+function wordsOf({ opened: { events, subject }, decision: { end, met } }) {
   const words = tell(momentAt(events, end), subject);
   return met ? `${tell(momentAt(events, events.indexOf(met)), subject)} ${words}` : words;
 }

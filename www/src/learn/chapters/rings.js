@@ -4,35 +4,12 @@ import { formatCount, plural } from '../../ui/format.js';
 import { offerNumber } from '../drag.js';
 import { isClosed, RING, ringsOf } from '../measure.js';
 import { createChart, createPlay, createRangeRow } from '../parts.js';
-import { byLevel, Orbit, Picture } from '../picture.js';
+import { byLevel, Orbit, Picture, rangeOf } from '../picture.js';
 
-/**
- * @import { LessonParticles } from '../../engine/types.js'
- * @import { Context } from '../types.js'
- */
+/** @import { Context } from '../types.js' */
 
 /** Time for the growth of the whole front. */
 const GROWTH_MS = 4500;
-
-/** Number of particles up to each level. @param {LessonParticles} particles */
-function countsOf({ levels }) {
-  const last = levels.reduce((most, level) => Math.max(most, level), 0);
-  return Array.from({ length: last + 1 }, (_, level) => levels.reduce((sum, own) => sum + (own <= level ? 1 : 0), 0));
-}
-
-/** The particles on some levels. @param {LessonParticles} all @param {(level: number) => boolean} isKept */
-function onLevels(all, isKept) {
-  const kept = [...all.levels.keys()].filter((i) => isKept(all.levels[i]));
-  const vectors = (/** @type {Float32Array} */ column) =>
-    Float32Array.from(kept.flatMap((i) => [column[3 * i], column[3 * i + 1], column[3 * i + 2]]));
-  return {
-    ...all,
-    positions: vectors(all.positions),
-    normals: vectors(all.normals),
-    radii: Float32Array.from(kept, (i) => all.radii[i]),
-    levels: Uint32Array.from(kept, (i) => all.levels[i]),
-  };
-}
 
 /** Creates the figure of the rings, with a bar for each after its prediction was made. @param {Context} context */
 export async function rings(context) {
@@ -41,7 +18,9 @@ export async function rings(context) {
   const orbit = new Orbit();
   orbit.fitTo(placed);
   orbit.faceFront(placed);
-  const counts = countsOf(placed);
+  const sizes = ringsOf(placed);
+  /** Number of particles up to each level of the first front. */
+  const counts = sizes.map((_, level) => sizes.slice(0, level + 1).reduce((sum, size) => sum + size, 0));
   const picture = new Picture(orbit, { name: 'The rings of the front around the seed' });
   const range = createRangeRow({
     name: 'Level',
@@ -53,8 +32,8 @@ export async function rings(context) {
   });
   /** @param {number} level */
   function show(level) {
-    const particles = onLevels(placed, (own) => own <= level);
-    const body = onLevels(placed, (own) => own > level);
+    const particles = rangeOf(placed, 0, counts[level]);
+    const body = rangeOf(placed, counts[level]);
     picture.show({ particles, body, isClosed: isClosed(run), colours: byLevel(particles, counts.length - 1) });
     if (isMounted) orbit.follow(placed, level);
   }
@@ -73,7 +52,6 @@ export async function rings(context) {
       range.set(level);
     },
   });
-  const sizes = ringsOf(placed);
   const words = () => {
     const level = range.place.value;
     const flat = level === 0 ? '' : ` On a plane: ${formatCount(6 * level)}.`;

@@ -8,7 +8,7 @@ import { latest } from '../latest.js';
 import { createMarkKey } from '../marks.js';
 import { isBare, isClosed, widestHole } from '../measure.js';
 import { createPlay, createRangeRow } from '../parts.js';
-import { byNeighbours, byValue, Orbit, Picture } from '../picture.js';
+import { byNeighbours, byValue, Orbit, Picture, rangeOf } from '../picture.js';
 import { scoreOf, written } from '../score.js';
 import { termShown } from '../terms.js';
 
@@ -40,15 +40,6 @@ async function meetingsOf({ client, chapters }) {
   }
   return { levels, found };
 }
-
-/** The first particles of a run. @param {LessonParticles} all @param {number} count */
-const firstOf = (all, count) => ({
-  ...all,
-  positions: all.positions.subarray(0, 3 * count),
-  normals: all.normals.subarray(0, 3 * count),
-  radii: all.radii.subarray(0, count),
-  levels: all.levels.subarray(0, count),
-});
 
 /**
  * Arrows from particles to their next positions.
@@ -88,7 +79,7 @@ async function courseOf(own) {
     body: (await own.run({ seed: 1, relax_steps: 0 })).placed,
     widest: await widestHole(own),
     /** The particles at a position of the slider. @param {number} place */
-    at: (place) => (place < front ? firstOf(placed, levels[place].after) : states[Math.max(0, place - front)]),
+    at: (place) => (place < front ? rangeOf(placed, 0, levels[place].after) : states[Math.max(0, place - front)]),
   };
 }
 

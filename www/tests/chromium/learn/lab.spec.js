@@ -161,15 +161,12 @@ test('numbers of the text turn the seed, the step of the relaxation and the tole
   const tolerance = page.locator('#what-if').getByRole('slider', { name: 'Tolerance of the sampling on the right' });
   await expect(tolerance).toHaveText('1.4 r');
   await tolerance.press('End');
-  await expect(bench.getByLabel('What changes')).toHaveValue('fail');
   await expect(bench.getByRole('slider', { name: 'Tolerance', exact: true })).toHaveText('1.9 r');
   await expect(bench.locator('.said')).toContainText('Worse.');
   clean();
 });
 
-test('a choice that was left is as it was: its dials show what is run, and go on from there', { tag: '@all' }, async ({
-  page,
-}) => {
+test('the dials show what is run, also what is kept, and go on from there', { tag: '@all' }, async ({ page }) => {
   const { clean } = await openLesson(page, { hash: '#what-if-fail' });
   const bench = page.locator('#bench');
   const [relaxation, seed] = ['Relaxation', 'Seed'].map((name) => bench.getByLabel(name, { exact: true }));
@@ -181,15 +178,13 @@ test('a choice that was left is as it was: its dials show what is run, and go on
   await relaxation.selectOption('0');
   await seed.selectOption('3');
   await expect(right).toHaveText('Queue, 0.8 r, no steps, seed 3');
-  await bench.getByLabel('What changes').selectOption('order');
-  await expect(right).toHaveText('Stack');
-  await bench.getByLabel('What changes').selectOption('fail');
-  // The picture is of one of those that are kept, and every dial says which.
-  await expect(right).toHaveText(/^(Queue|Stack), [01]/);
+  await expect(bench.locator('.said')).toContainText('Worse.');
+  await bench.getByRole('button', { name: 'Best so far' }).click();
+  await expect(right).toHaveText('Queue, 1.4 r, ten steps, seed 0');
   const dials = async () => {
     const chosen = await bench
       .locator('.controls select')
-      .evaluateAll((all) => all.slice(2).map((one) => /** @type {any} */ (one).selectedOptions[0].label));
+      .evaluateAll((all) => all.slice(1).map((one) => /** @type {any} */ (one).selectedOptions[0].label));
     const [who, steps, from] = chosen.map((words) => words.toLowerCase());
     return `${who}, ${await tolerance.textContent()}, ${steps}, ${from}`;
   };

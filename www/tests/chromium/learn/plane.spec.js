@@ -168,7 +168,7 @@ test('code comes after the cap, and with the answer to the question the seed is 
   const question = page.locator('#predict-children');
   await question.getByLabel('New particles').fill('5');
   await question.getByRole('button', { name: 'Reveal' }).click();
-  await expect(question.getByRole('status')).toContainText('It is 3. You said 5.For 3: one place around B holds A');
+  await expect(question.getByRole('status')).toContainText('It is 3. You said 5.One place around B holds A');
   await expect(figure.locator('.plane-question')).toContainText('Particle B, slot 1');
 });
 
@@ -177,7 +177,7 @@ test('mistakes are saved with an assignment, and stay counted when one begins ag
 }) => {
   const task = packTask({
     title: 'T',
-    setup: { what: 'order', on: '', left: 'queue', right: 'stack' },
+    setup: { on: '', left: 'queue~0.7~10~0', right: 'stack~0.7~10~0' },
     locks: [],
     questions: [],
   });

@@ -93,7 +93,7 @@ test('an assignment locks what the teacher chose, and its answers are one file',
   await expect(task.locator('figcaption')).toHaveText([/^Queue, 1\.4 r/, /^Queue, 1\.4 r/]);
   await task.getByLabel('Who comes next').selectOption('stack');
   await expect(task.getByRole('columnheader', { name: /^Stack, 1\.4/ })).toBeVisible();
-  await expect(task.getByLabel('What changes')).toBeDisabled();
+  await expect(task.getByLabel('Surface')).toBeDisabled();
   await task.getByRole('slider', { name: 'Tolerance' }).press('End');
   const header = task.getByRole('columnheader', { name: 'Stack, 1.9 r, ten steps, seed 0' });
   await expect(header).toBeVisible();
@@ -109,7 +109,7 @@ test('an assignment locks what the teacher chose, and its answers are one file',
     surface: '(sqrt(x^2 + y^2) - R)^2 + z^2 = 0.09, R = 0.7',
     answers: [{ question: 'Which run has closer pairs?', answer: 'The left one, "clearly".' }],
   });
-  await expect(task.getByText(/^Locked: what is compared here; the picture on the left\.$/)).toBeVisible();
+  await expect(task.getByText('Locked: the surface.')).toBeVisible();
   const ring = page.locator('#predict-ring');
   await ring.getByLabel('Particles in ring 12').fill('70');
   expect(JSON.parse(await saved()).predictions).toMatchObject([{ stop: 'predict-ring', guess: 70, answer: '' }]);
@@ -226,14 +226,14 @@ test('a lecturer drops thirty files and sees the answers beside what the run say
 });
 
 test('the values of a comparison are part of the address', { tag: '@all' }, async ({ page }) => {
-  await openLesson(page, { hash: '#what-if-step&left=0.2&right=none' });
+  await openLesson(page, { hash: '#what-if&left=none&right=queue~0.7~0~3' });
   const bench = page.locator('#bench');
-  await expect(bench.getByLabel('Left', { exact: true })).toHaveValue('0.2');
-  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('0.2');
-  await bench.getByLabel('Right', { exact: true }).selectOption('1');
-  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#what-if-step&left=0.2&right=1');
+  await expect(bench.locator('figcaption')).toHaveText([/^Queue, 1\.4 r, ten/, 'Queue, 1.4 r, no steps, seed 3']);
+  await bench.getByLabel('Seed', { exact: true }).selectOption('1');
+  const hash = '#what-if&left=queue~0.7~10~0&right=queue~0.7~0~1';
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe(hash);
   await page.reload();
-  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('1');
+  await expect(bench.getByLabel('Seed', { exact: true })).toHaveValue('1');
   // They do not follow to another stop.
   await page.getByRole('link', { name: 'Rings', exact: true }).click();
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
@@ -267,7 +267,7 @@ test('the worst sampling is looked for by keys, and the best and the worst are k
   await kept('Worst so far').click();
   await expect(bench.locator('figcaption')).toHaveText([/^Queue, 1\.4 r, ten/, /^Stack, 0\.8/]);
   const values = 'left=queue~0.7~10~0&right=stack~0.4~0~0';
-  await expect.poll(() => page.evaluate(() => location.hash)).toBe(`#what-if-fail&${values}`);
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe(`#what-if&${values}`);
   // They are there again later, and where the address says nothing both are shown.
   await page.goto('about:blank');
   await openLesson(page, { hash: '#what-if-fail' });

@@ -1,13 +1,13 @@
 /** The parts of the lesson that need no browser. */
 import { expect, test } from 'vitest';
-import { nearestStop, readAddress, writeAddress } from '../../../src/learn/address.js';
+import { readAddress, stopFor, writeAddress } from '../../../src/learn/address.js';
 import { Stops } from '../../../src/learn/answers.js';
+import { SEED, seedAt, turned, USUAL } from '../../../src/learn/knobs.js';
 import { asFineEverywhere, isBare, nearestDistances, ringsOf, sharpestBend } from '../../../src/learn/measure.js';
 import { cellOf } from '../../../src/learn/patch.js';
 import { bestOf, rowOf, scoreOf, verdictOf } from '../../../src/learn/score.js';
 import { subjectOf } from '../../../src/learn/surface.js';
 import { packTask, readWork, tableOfAll, unpackTask } from '../../../src/learn/task.js';
-import { FAIL, SEED, seedAt, turned, USUAL } from '../../../src/learn/whatifs.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../../src/ui/surface-link.js';
 
 /** @import { Control } from '../../../src/learn/types.js' */
@@ -44,24 +44,20 @@ test('an address is read as it was written, and a bare anchor is one', () => {
   expect(writeAddress({ stop: '', parts: {} })).toBe('');
 });
 
-test('an unknown stop leads to the one with the nearest name', () => {
-  const stops = ['why', 'rings', 'rest', 'what-if-order'];
-  expect(nearestStop('rings', stops)).toEqual({ stop: 'rings', isExact: true });
-  expect(nearestStop('ring', stops)).toEqual({ stop: 'rings', isExact: false });
-  expect(nearestStop('what-if-orders', stops)).toEqual({ stop: 'what-if-order', isExact: false });
-  expect(nearestStop('', stops)).toBe(null);
-  expect(nearestStop('x'.repeat(10_000), stops)?.isExact).toBe(false);
-});
-
 test('a link to what the lesson no longer has leads to what is nearest by its content, without slides', () => {
-  const stops = ['why', 'plane', 'rings', 'judge', 'cost'];
+  const stops = ['why', 'plane', 'rings', 'judge', 'cost', 'what-if', 'what-if-fail'];
   for (const [old, stop] of [
+    ['rings', 'rings'],
+    ['what-if-fail', 'what-if-fail'],
     ['race', 'cost'],
     ['moving', 'cost'],
     ['predict-moving', 'cost'],
     ['predict-few', 'judge'],
+    ['what-if-order', 'what-if'],
+    ['ringz', ''],
+    ['toString', ''],
   ])
-    expect(nearestStop(old, stops), old).toEqual({ stop, isExact: false });
+    expect(stopFor(old, stops), old).toBe(stop);
   expect(readAddress('#rings&mode=present')).toEqual({ stop: 'rings', parts: {} });
 });
 
@@ -139,30 +135,22 @@ test('a fine sampling counts areas', () => {
 test('an assignment comes out of a link as it went in, and what is damaged of it is set right', () => {
   const task = {
     title: 'Seams',
-    setup: { what: 'fail', on: 'torus', left: 'queue~0.7~10~0', right: 'stack~0.95~0~2' },
-    locks: /** @type {Control[]} */ (['what', 'right']),
+    setup: { on: 'torus', left: 'queue~0.7~10~0', right: 'stack~0.95~0~2' },
+    locks: /** @type {Control[]} */ (['on', 'right']),
     questions: ['Why?', 'Where?'],
   };
   expect(unpackTask(packTask(task))).toEqual(task);
-  const odd = unpackTask(
-    packed({ setup: { what: 'step', left: 9, right: '1' }, locks: ['race'], questions: [3, 'x'.repeat(999)] }),
-  );
-  const pressed = { what: FAIL, on: '', left: USUAL, right: turned(USUAL, SEED, seedAt([0.123456, -1, 1e-7])) };
+  const pressed = { on: '', left: USUAL, right: turned(USUAL, SEED, seedAt([0.123456, -1, 1e-7])) };
   expect(pressed.right).toBe('queue~0.7~10~at 0.1235 -1 1e-7');
   expect(unpackTask(packed({ setup: pressed, questions: [] }))?.setup).toEqual(pressed);
   const stack = 'stack~0.7~10~0';
   for (const right of ['at 1 x 2', 'heap~0.7~10~0', 'stack~0.1~10~0', 'stack~0.7~10', 'stack~0.7~10~at 1 x 2'])
     expect(unpackTask(packed({ setup: { ...pressed, right }, questions: [] }))?.setup.right, right).toBe(stack);
   // A link from before there was a choice of surfaces, and of a lock that is gone.
-  expect(odd).toMatchObject({ title: '', setup: { what: 'step', on: '', left: '0.6', right: '1' }, locks: [] });
+  const odd = unpackTask(packed({ setup: { left: 9, right: '1' }, locks: ['race'], questions: [3, 'x'.repeat(999)] }));
+  expect(odd).toMatchObject({ title: '', setup: { on: '', left: USUAL, right: stack }, locks: [] });
   expect(odd?.questions.map(({ length }) => length)).toEqual([1, 500]);
-  for (const bad of [
-    '',
-    'AAAA',
-    packed(null),
-    packed({ questions: [] }),
-    packed({ setup: { what: 'none' }, questions: [] }),
-  ])
+  for (const bad of ['', 'AAAA', packed(null), packed({ questions: [] }), packed({ setup: 'none', questions: [] })])
     expect(unpackTask(bad)).toBe(null);
 });
 
