@@ -266,14 +266,16 @@ function createShown(engine, fault) {
  * @param {Engine} engine
  */
 function createUnchanging(engine) {
-  // While the sampler runs, the last result stays.
-  let kind = '';
+  // While the sampler runs, the last result for this formula stays.
+  let [kind, formula] = ['', ''];
   return h('p', { class: 'quiet unchanging' }, () => {
     const { field, fieldError, empty, busy, report, columns } = engine;
     const { periods, model } = field.value ?? {};
     if (!periods || model || fieldError.value || empty.value) return '';
     const without = ['x', 'y', 'z'].filter((_, k) => periods[k] === 0);
     if (without.length === 0 || without.length === 3) return '';
+    if (field.value?.formula !== formula) kind = '';
+    formula = field.value?.formula ?? '';
     if (report.value && !busy.value) kind = kindOf(columns);
     return `No ${without.join(', ')}${kind && `: ${kind}`}`;
   });
