@@ -22,6 +22,8 @@ export const PATCHES = [
     surface: { formula: 'z = 0', parameters: [], bounds: { min: [-1, -1, -0.5], max: [1, 1, 0.5] } },
     radius: 0.13,
     seed: [0, 0, 0],
+    asks: 'predict-children',
+    waits: 'Particle A is done. Before B has its turn, answer the question below.',
     ends: 'Two particles are done. In a plane every child met its particle exactly, or none at all.',
   },
   {

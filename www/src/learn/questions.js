@@ -53,7 +53,7 @@ export const QUESTIONS = {
     right: ({ added }) => added,
     words: ({ added, matched }) => [
       `One place around B holds A, and ${formatCount(matched)} hold particles that A has placed beside B: there is room for ${formatCount(added)}.`,
-      'In the figure B has its turn.',
+      'In the figure B has its turn now.',
     ],
   }),
   'predict-ring': one({

@@ -81,7 +81,8 @@ export type Judged = {
 export type Verdict = { fate: 'matched' | 'added'; particle: number | null };
 /**
  * A surface on which the learner is the algorithm. `isAtSeam`: where the front first meets itself;
- * `ends`: what is said at the end.
+ * `ends`: what is said at the end; `asks`: the question that is asked before the turn of the second particle, and
+ * `waits`: what is said until then.
  */
 export interface Patch {
   id: string;
@@ -90,6 +91,8 @@ export interface Patch {
   radius: number;
   seed: [number, number, number];
   isAtSeam?: boolean;
+  asks?: string;
+  waits?: string;
   ends: string;
 }
 /**

@@ -41,6 +41,14 @@ export async function projected(lab, projection) {
 
 /** By its name. @type {Record<string, WhatIf>} */
 export const WHAT_IFS = {
+  order: {
+    look: 'Which particle comes next decides whether the front grows in rings or runs off like a thread, and so how many seams it leaves.',
+    colouring: 'level',
+    sides: setting('order', [
+      ['queue', 'Queue'],
+      ['stack', 'Stack'],
+    ]),
+  },
   projection: {
     look: 'A tanglecube, a cube with a tunnel through each pair of faces, before relaxation: it bends much within 2r. With one r Newton’s method would place more particles, since its children land nearer; so its r is larger here, and the numbers differ by 2 %.',
     colouring: 'parent',

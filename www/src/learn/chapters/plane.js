@@ -43,23 +43,19 @@ export async function plane(context) {
   await loadSheet(sheet);
   const chosen = signal(0);
   const place = h('div', { class: 'plane-box' });
-  /** @type {Map<number, ReturnType<typeof createExercise>>} */
+  /** @type {Map<number, HTMLElement>} */
   const made = new Map();
   async function choose(/** @type {number} */ k) {
     const exercise = made.get(k) ?? (await begin(context, PATCHES[k], () => void choose(k + 1)));
     made.set(k, exercise);
     chosen.value = k;
     // `fill` would dispose of the old exercise, which may be shown again.
-    place.replaceChildren(exercise.element);
+    place.replaceChildren(exercise);
   }
   const buttons = PATCHES.map(({ name }, k) =>
     button({ 'aria-pressed': () => String(chosen.value === k), press: () => void choose(k) }, name),
   );
   await choose(0);
-  // The question reveals the seed's fates, and asks for its first child.
-  live(place, () => {
-    if (context.stops.isOpen('predict-children')) made.get(0)?.leaveSeed();
-  });
   const entry = (/** @type {Element} */ mark, /** @type {string} */ words) => {
     const svg = s('svg', { class: 'shape drawing', viewBox: '-1.2 -1.2 2.4 2.4', 'aria-hidden': 'true' });
     svg.append(mark);
@@ -111,8 +107,13 @@ function createExercise(patch, { turns, stops, goOn }) {
   /** They stay counted when one goes back. @type {Signal<readonly string[]>} */
   const mistakes = signal(kept.mistakes ?? []);
   const told = signal({ state: '', words: '' });
-  const now = computed(() => turns[answers.value.length] ?? null);
+  const next = computed(() => turns[answers.value.length] ?? null);
   const particles = [...new Set(turns.map(({ opened }) => opened))];
+  // A question about the second particle is asked before its turn.
+  const waits = computed(
+    () => !!patch.asks && !!next.value && next.value.opened !== particles[0] && !stops.isOpen(patch.asks),
+  );
+  const now = computed(() => (waits.value ? null : next.value));
   const score = () => scoreOf(answers.value, mistakes.value);
 
   /** @param {readonly ('right' | 'left')[]} next @param {string} [words] */
@@ -160,13 +161,17 @@ function createExercise(patch, { turns, stops, goOn }) {
     else decide(said);
   }
 
-  const box = h('div', { class: 'drawing-box plane-drawing', on: { click: press } }, () => drawingOf(now.value, turns));
-  const isOver = () => now.value === null;
+  const box = h('div', { class: 'drawing-box plane-drawing', on: { click: press } }, () =>
+    drawingOf(now.value, waits.value ? particles[0] : particles[particles.length - 1]),
+  );
+  const isOver = () => next.value === null;
   const isLast = patch === PATCHES.at(-1);
-  const element = h(
+  return h(
     'div',
     { class: 'plane' },
-    h('p', { class: 'plane-question', 'aria-live': 'polite' }, () => (now.value ? asking(now.value) : patch.ends)),
+    h('p', { class: 'plane-question', 'aria-live': 'polite' }, () =>
+      now.value ? asking(now.value) : waits.value ? patch.waits : patch.ends,
+    ),
     box,
     h(
       'div',
@@ -178,7 +183,7 @@ function createExercise(patch, { turns, stops, goOn }) {
         'div',
         { class: 'controls plane-score' },
         h('p', { class: 'figure-count' }, () => {
-          const at = particles.indexOf((now.value ?? turns[turns.length - 1]).opened);
+          const at = particles.indexOf((next.value ?? turns[turns.length - 1]).opened);
           const treated = `Particle ${formatCount(at + 1)} of ${formatCount(particles.length)}`;
           return `${[treated, ...score()].join(' · ')}.`;
         }),
@@ -198,15 +203,6 @@ function createExercise(patch, { turns, stops, goOn }) {
         ),
     ),
   );
-  return {
-    element,
-    /** Lets the run decide for the seed, if it is the seed's turn. */
-    leaveSeed() {
-      if (now.peek()?.opened !== particles[0]) return;
-      const rest = turns.filter(({ opened }) => opened === particles[0]).slice(answers.peek().length);
-      go([...answers.peek(), ...rest.map(() => /** @type {const} */ ('left'))]);
-    },
-  };
 }
 
 /**
@@ -236,12 +232,9 @@ const NOBODY = [];
 const asking = ({ opened: { subject }, decision: { slot } }) =>
   `Particle ${letterOf(subject.particle)}, slot ${slot}: is a new one put here?`;
 
-/** The drawing of a slot, or that of the end. @param {Turn | null} turn @param {readonly Turn[]} turns */
-function drawingOf(turn, turns) {
-  if (turn) return tangentPlane(turn.opened, turn.moment);
-  const { opened } = turns[turns.length - 1];
-  return tangentPlane(opened, momentAt(opened.events, opened.events.length - 1));
-}
+/** The drawing of a slot; without one that of a particle at its end. @param {Turn | null} turn @param {Opened} done */
+const drawingOf = (turn, done) =>
+  turn ? tangentPlane(turn.opened, turn.moment) : tangentPlane(done, momentAt(done.events, done.events.length - 1));
 
 /**
  * What a press on the drawing says: of a particle or the slot; else words.
