@@ -4,9 +4,8 @@ import { triple } from '../../engine/vector.js';
 import { byId, fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatSignificant, plural } from '../../ui/format.js';
 import { offerNumber } from '../drag.js';
-import { latest } from '../latest.js';
 import { createMarkKey } from '../marks.js';
-import { isBare, isClosed, widestHole } from '../measure.js';
+import { isBare, isClosed } from '../measure.js';
 import { createPlay, createRangeRow } from '../parts.js';
 import { byNeighbours, byValue, Orbit, Picture, rangeOf } from '../picture.js';
 import { scoreOf, written } from '../score.js';
@@ -77,7 +76,6 @@ async function courseOf(own) {
     ...{ run, placed, levels, found, steps, states, front, quarter: Math.max(0, quarter), last: front + steps.length },
     // The body comes from another run, so that it does not show where this one leaves a hole.
     body: (await own.run({ seed: 1, relax_steps: 0 })).placed,
-    widest: await widestHole(own),
     /** The particles at a position of the slider. @param {number} place */
     at: (place) => (place < front ? rangeOf(placed, 0, levels[place].after) : states[Math.max(0, place - front)]),
   };
@@ -89,7 +87,7 @@ async function courseOf(own) {
 export async function seams({ lab, stops }) {
   const own = await lab;
   const course = await courseOf(own);
-  const { placed, front, quarter, last, widest } = course;
+  const { placed, front, quarter, last } = course;
   const orbit = new Orbit();
   orbit.fitTo(placed);
   orbit.faceFront(placed);
@@ -121,18 +119,12 @@ export async function seams({ lab, stops }) {
   const step = () => Math.max(0, range.place.value - front);
   /** Scores of the states so far, in order. @type {Signal<Score[]>} */
   const scores = signal([]);
-  // States are measured when they are shown.
-  const measure = latest(async (/** @type {number} */ count, isOld) => {
-    for (const [k, state] of course.states.slice(0, count).entries()) {
-      const known = scores.peek()[k];
-      const score = known ?? (await scoreOf(own, state, { evaluations: 0, isAdaptive: false }));
-      if (isOld()) return;
-      if (!known) scores.value = [...scores.peek(), score];
-    }
-  });
-  live(picture.element, () => {
-    if (isFree()) void measure(isRelaxing() ? course.states.length : 1);
-  });
+  async function measure() {
+    for (const state of course.states)
+      scores.value = [...scores.peek(), await scoreOf(own, state, { evaluations: 0, isAdaptive: false })];
+  }
+  // Without its figures the picture is complete.
+  measure().catch(() => {});
   live(picture.element, () => {
     const place = Math.min(range.place.value, limit());
     const picked = place <= front ? stops.picked('predict-hole') : null;
@@ -154,8 +146,7 @@ export async function seams({ lab, stops }) {
     // Before the end of the front a press chooses one of the particles to come, so bare surface can be pressed.
     const places = place < front ? placed : course.at(place);
     picture.show({ particles, body: course.body, isClosed: isClosed(course.run), places, colours, marks });
-    const hole = scores.value[step()]?.places.hole ?? (step() === 0 ? widest?.hole : null) ?? null;
-    picture.ringed.value = place >= front && isFree() ? hole : null;
+    picture.ringed.value = (place >= front && isFree() && scores.value[step()]?.places.hole) || null;
   });
   // The answer concerns the whole front; the next one concerns the steps after it.
   let [wasFree, wasRelaxing] = [isFree(), isRelaxing()];
@@ -163,7 +154,8 @@ export async function seams({ lab, stops }) {
     const [isNow, isAfter] = [isFree() && !wasFree, isRelaxing() && !wasRelaxing];
     [wasFree, wasRelaxing] = [isFree(), isRelaxing()];
     if (isNow || isAfter) range.set(front);
-    if (isNow && widest) orbit.turnTo(widest.hole.normal);
+    const hole = scores.peek()[0]?.places.hole;
+    if (isNow && hole) orbit.turnTo(hole.normal);
   });
   const words = h('p', { class: 'figure-count' }, () =>
     isFree() ? wordsAt(course, range.place.value) : asking(isCovered.value, stops.picked('predict-hole')),
