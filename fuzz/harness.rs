@@ -5,7 +5,6 @@
 //! in `seeds/`.
 
 use glam::{DVec3, Vec3};
-use marching_particles::Image;
 use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::{Enclosure, Field, Jet};
@@ -15,6 +14,7 @@ use marching_particles::pointcloud::read::Reader;
 use marching_particles::sampler::{Search, Settings};
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::slices::complete;
+use marching_particles::{Image, ImageChoice, RawVoxels, VoxelType};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -322,25 +322,55 @@ pub fn run(
 /// A file of an image: it is refused with a message, or it is an image whose voxels are finite,
 /// with a surface between its darkest and its brightest voxel whose field has finite values there.
 pub fn image(bytes: &[u8]) {
-    let beside = |name: &str| Err(format!("{name} is not read here"));
-    let image = match Image::read("scan.hdr", bytes.to_vec(), beside) {
-        Ok(image) => image,
-        Err(error) => {
-            let message = error.to_string();
-            assert!(!message.is_empty() && !message.chars().any(char::is_control), "{error:?}");
-            return;
-        }
+    /// Parts a header from the file beside it.
+    const BESIDE: &[u8] = b"\n~beside~\n";
+    let explained = |message: String| {
+        assert!(!message.is_empty() && !message.chars().any(char::is_control), "{message:?}");
     };
+    let mut random = Random::of(bytes);
+    // The same bytes without a header.
+    let raw = RawVoxels {
+        size: core::array::from_fn(|_| random.between(0.0, 6.0) as usize),
+        voxel_type: VoxelType::ALL[random.between(0.0, 9.99) as usize],
+        is_big_endian: random.between(0.0, 1.0) < 0.5,
+        skip: random.between(0.0, 20.0) as u64,
+    };
+    if let Err(error) = Image::read_raw(bytes.to_vec(), &raw) {
+        explained(error.to_string());
+    }
+    let parted = bytes.windows(BESIDE.len()).position(|window| window == BESIDE);
+    let (header, data) = match parted {
+        Some(at) => (&bytes[..at], Some(&bytes[at + BESIDE.len()..])),
+        None => (bytes, None),
+    };
+    let beside = |name: &str| data.map(<[u8]>::to_vec).ok_or_else(|| format!("{name} is not there"));
+    let image = match Image::read("scan.hdr", header.to_vec(), beside) {
+        Ok(image) => image,
+        Err(error) => return explained(error.to_string()),
+    };
+    if let Some(outline) = Image::outline("scan.hdr", header).expect("what is read has an outline") {
+        assert_eq!((outline.size, outline.voxel_type), (image.size(), image.voxel_type()));
+    }
     let [min, max] = image.range();
     assert!(min.is_finite() && max.is_finite() && min < max, "{image:?}");
     let voxels: usize = image.size().iter().product();
     assert!(voxels <= image.bytes() && image.size().iter().all(|&n| n >= 2), "{image:?}");
-    // A few million voxels take seconds.
-    if voxels > 100_000 {
+    // Thousands of files are tried.
+    if voxels > 20_000 {
         return;
     }
-    let Ok(field) = image.at(image.otsu()) else { return };
-    let mut random = Random::of(bytes);
+    let mut chosen = |share: f64| random.between(0.0, 1.0) < share;
+    let choice = ImageChoice {
+        iso: None,
+        label: if chosen(0.3) { image.labels().first().map(|label| label.value) } else { None },
+        smooth: if chosen(0.5) { Some(0.8) } else { None },
+        is_dark_inside: chosen(0.3),
+        is_closed: chosen(0.3),
+    };
+    let field = match image.surface(&choice, None) {
+        Ok(surface) => surface.field().clone(),
+        Err(error) => return explained(error.to_string()),
+    };
     for _ in 0..4 {
         let index = DVec3::from_array(image.size().map(|n| random.between(0.0, (n - 1) as f64)));
         let p = image.placement().point(index);

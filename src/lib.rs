@@ -184,7 +184,7 @@ pub use glam;
 #[cfg(feature = "images")]
 pub use image::{
     DEFAULT_LABEL_WIDTH, Image, ImageChoice, ImageError, ImageField, ImageFormat, ImageOutline,
-    ImageReadError, ImageSurface, Label, Placement as ImagePlacement, RawVoxels, Voxel, VoxelType,
+    ImageReadError, ImageSurface, Label, Placement as ImagePlacement, RawVoxels, Section, Voxel, VoxelType,
 };
 pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::bodies::{Bodies, Body};

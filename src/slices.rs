@@ -61,6 +61,23 @@ pub fn pause() -> impl Future<Output = ()> + Send {
     poll_fn(move |_| if core::mem::replace(&mut is_over, true) { Poll::Ready(()) } else { Poll::Pending })
 }
 
+/// Ends a slice of work after every [`LIGHT`] items.
+#[derive(Default)]
+pub(crate) struct Meter {
+    items: usize,
+}
+
+impl Meter {
+    /// Counts items that were done.
+    pub(crate) async fn add(&mut self, items: usize) {
+        self.items += items;
+        while self.items >= LIGHT {
+            self.items -= LIGHT;
+            pause().await;
+        }
+    }
+}
+
 /// Divides 0..`count` into ranges of `size`, one for each slice.
 pub fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> + Send {
     (0..count).step_by(size).map(move |first| first..(first + size).min(count))

@@ -107,7 +107,7 @@ impl Field {
     /// type, the index along the first axis changing fastest; `rows` is the affine map from indices
     /// to points.
     #[staticmethod]
-    #[pyo3(signature = (voxels, voxel_type, size, rows, iso, label, smooth, is_dark_inside))]
+    #[pyo3(signature = (voxels, voxel_type, size, rows, iso, label, smooth, is_dark_inside, is_closed))]
     #[allow(clippy::too_many_arguments, reason = "they are the keywords of the package's function")]
     fn image(
         py: Python<'_>,
@@ -119,6 +119,7 @@ impl Field {
         label: Option<f64>,
         smooth: Option<f64>,
         is_dark_inside: bool,
+        is_closed: bool,
     ) -> PyResult<(Self, String)> {
         let voxel_type = VoxelType::named(voxel_type);
         let voxel_type = voxel_type.expect("the package converts what has no type here");
@@ -127,13 +128,13 @@ impl Field {
             let image = Image::from_bytes(size, voxel_type, voxels)
                 .and_then(|image| image.with_affine(rows))
                 .map_err(|error| PyValueError::new_err(error.to_string()))?;
-            Self::imaged(&image, &ImageChoice { iso, label, smooth, is_dark_inside })
+            Self::imaged(&image, &ImageChoice { iso, label, smooth, is_dark_inside, is_closed })
         })
     }
 
     /// [`Self::image`] of a file, which may name others beside it.
     #[staticmethod]
-    #[pyo3(signature = (path, iso, label, smooth, is_dark_inside))]
+    #[pyo3(signature = (path, iso, label, smooth, is_dark_inside, is_closed))]
     fn image_file(
         py: Python<'_>,
         path: PathBuf,
@@ -141,6 +142,7 @@ impl Field {
         label: Option<f64>,
         smooth: Option<f64>,
         is_dark_inside: bool,
+        is_closed: bool,
     ) -> PyResult<(Self, String)> {
         py.detach(|| {
             let content = std::fs::read(&path)?;
@@ -149,7 +151,7 @@ impl Field {
                 |name: &str| std::fs::read(path.with_file_name(name)).map_err(|error| error.to_string());
             let image = Image::read(&name, content, beside)
                 .map_err(|error| PyValueError::new_err(error.to_string()))?;
-            Self::imaged(&image, &ImageChoice { iso, label, smooth, is_dark_inside })
+            Self::imaged(&image, &ImageChoice { iso, label, smooth, is_dark_inside, is_closed })
         })
     }
 

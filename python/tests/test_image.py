@@ -37,6 +37,15 @@ def test_affine_places_the_image():
     assert np.abs(distances(mp.sample(spaced, count=500), [8.1, 8.55, 9.2]) - 4.5).max() < 0.03
 
 
+def test_a_surface_that_the_border_cuts_can_be_closed():
+    rod = 7 - np.linalg.norm(np.indices((30, 28, 16))[:2] - np.reshape((14.2, 13.1), (2, 1, 1, 1)), axis=0)
+    opened = mp.sample(mp.Image(rod, iso=0, smooth=0), count=800)
+    closed = mp.sample(mp.Image(rod, iso=0, smooth=0, border="closed"), count=800)
+    assert (opened.report["euler"], closed.report["euler"]) == (0, 2)
+    assert abs(opened.points[:, 2].max() - 15) < 1e-3
+    assert abs(closed.points[:, 2].max() - 15.5) < 0.05
+
+
 def test_coordinates_of_xarray_place_the_image():
     shape = (26, 28, 30)
     places = {"z": 10 + 2 * np.arange(26), "y": -np.arange(28.0), "x": np.arange(30) / 2}
@@ -79,6 +88,7 @@ def test_labels_and_iso_are_chosen():
         (lambda: mp.Image(ball(), affine=np.zeros((3, 4))), ValueError, "plane"),
         (lambda: mp.Image(ball(), affine=np.eye(2)), ValueError, "shape"),
         (lambda: mp.Image(ball(), inside="left"), ValueError, "bright"),
+        (lambda: mp.Image(ball(), border="shut"), ValueError, "closed"),
     ],
 )
 def test_wrong_images_are_refused(make, error, words):

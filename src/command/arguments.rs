@@ -373,6 +373,10 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, requires = "image", help_heading = "Surface")]
     pub(crate) dark_inside: bool,
 
+    /// Close the surface at the border of --image, where it would end with a rim
+    #[arg(long, requires = "image", help_heading = "Surface")]
+    pub(crate) close_border: bool,
+
     /// Layout of --image if it has no known header: the numbers of voxels along x, y and z, their
     /// type, and if needed `big` for big-endian numbers and the bytes to skip before the voxels:
     /// 256x256x128,uint16,big,skip=512

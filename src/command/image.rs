@@ -34,6 +34,8 @@ pub(crate) struct ImageInfo {
     pub(crate) noise: f64,
     /// Whether darker voxels are inside.
     pub(crate) is_dark_inside: bool,
+    /// Whether the surface is closed at the border of the image.
+    pub(crate) is_closed: bool,
     /// Notes of the reader.
     pub(crate) notes: Vec<String>,
     /// Bytes of the voxels, and further bytes of the field.
@@ -60,6 +62,7 @@ pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(Image
         label: arguments.label,
         smooth: arguments.smooth,
         is_dark_inside: arguments.dark_inside,
+        is_closed: arguments.close_border,
     };
     let surface = image.surface(&choice, None).map_err(|error| wrong(&error))?;
     let field = surface.field();
@@ -74,8 +77,9 @@ pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(Image
         label: arguments.label,
         smooth: surface.smooth(),
         is_smooth_chosen: arguments.smooth.is_none(),
-        noise: image.noise(),
+        noise: surface.noise(),
         is_dark_inside: arguments.dark_inside,
+        is_closed: arguments.close_border,
         notes: notes(&image, &surface, arguments),
         bytes: [field.image().bytes(), field.bytes()],
     };
@@ -166,6 +170,7 @@ impl ImageInfo {
             Some(label) => format!("surface of the label {}", significant(label)),
             None => format!("surface at the value {}{chosen}, {inside} voxels inside", significant(self.iso)),
         };
+        let surface = if self.is_closed { surface + ", closed at the border of the image" } else { surface };
         let mut lines = vec![
             format!("image: {}", self.name),
             format!("{x} × {y} × {z} voxels of {spacing}, {}, {min} to {max}", self.voxel_type),

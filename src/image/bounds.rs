@@ -12,11 +12,11 @@ use core::ops::Range;
 /// Bounds of the derivatives of [`ORDERS`], over indices.
 pub(super) type Derivatives = [Interval; 10];
 
-/// Most cells that are bounded by Bézier points. A voxel of an image that is rotated in space lies
-/// in a box of up to three cells along each axis.
+/// Number of cells up to which a box is bounded by Bézier points, cell by cell. A voxel of an image
+/// that is rotated in space lies in a box of up to three cells along each axis.
 const FEW: usize = 27;
-/// Most blocks along each axis whose bounds are joined. Over more blocks the derivatives are
-/// bounded by those of the whole image.
+/// Number of blocks along each axis up to which their bounds are joined. Over more blocks the
+/// derivatives are bounded by those of the whole image.
 const BLOCKS: usize = 4;
 /// Tolerance, in cells, within which a box counts as part of one cell, although a face was rounded
 /// outward. Beyond their common face the polynomials of two cells differ only by the cube of the

@@ -1,6 +1,7 @@
 //! The choice of a surface in an image, the same for all interfaces.
 
 use super::{DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField};
+use crate::slices::{self, LIGHT};
 
 /// A surface of an image: at an iso value, or around a label.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,6 +15,9 @@ pub struct ImageChoice {
     pub smooth: Option<f64>,
     /// Whether the darker voxels are inside.
     pub is_dark_inside: bool,
+    /// Whether a surface that the border of the image cuts is closed there, half a voxel beyond the
+    /// outermost centres; otherwise it ends with a rim.
+    pub is_closed: bool,
 }
 
 /// The surface that a choice leads to.
@@ -23,6 +27,7 @@ pub struct ImageSurface {
     choice: ImageChoice,
     filtered: Image,
     smooth: f64,
+    noise: f64,
     field: ImageField,
 }
 
@@ -57,6 +62,12 @@ impl ImageSurface {
         self.smooth
     }
 
+    /// Standard deviation of the [noise](Image::noise) of the image before the Gaussian.
+    #[must_use]
+    pub fn noise(&self) -> f64 {
+        self.noise
+    }
+
     /// Notes of the reader and the filter, in sentences for the user.
     #[must_use]
     pub fn notes(&self) -> &[String] {
@@ -65,8 +76,8 @@ impl ImageSurface {
 }
 
 impl Image {
-    /// The surface of a choice. If the surface `before` has the same image, label and width, its
-    /// filtered image is reused; the result is the same.
+    /// The surface of a choice. If the surface `before` has the same image, what was made for it
+    /// and stays the same is reused; the result is the same.
     ///
     /// # Errors
     ///
@@ -77,29 +88,77 @@ impl Image {
         choice: &ImageChoice,
         before: Option<&ImageSurface>,
     ) -> Result<ImageSurface, ImageError> {
-        let smooth = choice.smooth.unwrap_or_else(|| match choice.label {
-            Some(_) => DEFAULT_LABEL_WIDTH,
-            None => self.width_against_noise(choice.iso.unwrap_or_else(|| self.otsu())),
-        });
-        let known = before.filter(|before| {
-            before.choice.label == choice.label && before.smooth == smooth && before.image.is_same(self)
-        });
+        slices::complete(self.clone().surface_in_slices(*choice, before.cloned()))
+    }
+
+    /// [`Image::surface`] in slices of work.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Image::surface`].
+    pub async fn surface_in_slices(
+        self,
+        choice: ImageChoice,
+        before: Option<ImageSurface>,
+    ) -> Result<ImageSurface, ImageError> {
+        let before = before.filter(|before| before.image.is_same(&self));
+        if let Some(before) = before.as_ref().filter(|before| before.choice == choice) {
+            return Ok(before.clone());
+        }
+        let noise = match &before {
+            Some(before) => before.noise,
+            None => self.measured_noise().await,
+        };
+        let smooth = match (choice.smooth, choice.label, choice.iso) {
+            (Some(smooth), ..) => smooth,
+            (None, Some(_), _) => DEFAULT_LABEL_WIDTH,
+            (None, None, Some(iso)) => self.width_at(iso, noise).await,
+            (None, None, None) => self.width_at(self.counted().await.otsu(), noise).await,
+        };
+        let known = before.filter(|before| before.choice.label == choice.label && before.smooth == smooth);
         let filtered = match (known, choice.label) {
-            (Some(known), _) => known.filtered.clone(),
-            (None, Some(label)) => self.label(label, smooth)?,
+            (Some(known), _) => known.filtered,
+            (None, Some(label)) => self.distance_from(label, smooth).await?,
             (None, None) if smooth == 0.0 => self.clone(),
-            (None, None) => self.smoothed(smooth)?,
+            (None, None) => self.blurred(smooth).await?,
         };
-        let iso = match choice.label {
-            Some(_) => 0.0,
-            None => choice.iso.unwrap_or_else(|| filtered.otsu()),
+        let iso = match (choice.label, choice.iso) {
+            (Some(_), _) => 0.0,
+            (None, Some(iso)) => iso,
+            (None, None) => filtered.counted().await.otsu(),
         };
-        let field = ImageField::new(&filtered, iso, choice.is_dark_inside)?;
-        Ok(ImageSurface { image: self.clone(), choice: *choice, filtered, smooth, field })
+        let [min, max] = filtered.range;
+        let is_there = iso > min && iso < max;
+        let closed = if choice.is_closed && is_there {
+            Some(filtered.closed_at(iso, choice.is_dark_inside).await?)
+        } else {
+            None
+        };
+        let field =
+            ImageField::made(closed.as_ref().unwrap_or(&filtered), iso, choice.is_dark_inside).await?;
+        Ok(ImageSurface { image: self, choice, filtered, smooth, noise, field })
+    }
+
+    /// Estimated number of slices of [`Image::surface_in_slices`] without a surface before.
+    #[must_use]
+    pub fn slices_of(&self, choice: &ImageChoice) -> u64 {
+        /// Passes over all voxels: of the coefficients, of a Gaussian with the range of its result,
+        /// of the distances from a label, and of a histogram.
+        const FIELD: u64 = 4;
+        const BLUR: u64 = 4;
+        const LABEL: u64 = 7;
+        const COUNT: u64 = 1;
+        let passes = match (choice.label, choice.iso) {
+            (Some(_), _) => LABEL + BLUR,
+            (None, Some(_)) => BLUR,
+            (None, None) => BLUR + 2 * COUNT,
+        };
+        let a_pass = self.voxels.len().div_ceil(LIGHT) as u64;
+        (FIELD + passes) * a_pass
     }
 
     /// Whether the other image is a copy of this one that shares its voxels.
-    fn is_same(&self, other: &Self) -> bool {
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.voxels.are_shared_with(&other.voxels) && self.placement == other.placement
     }
 }

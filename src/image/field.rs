@@ -5,6 +5,7 @@ use super::kernel::{Number, weights};
 use super::{Image, ImageError, Placement};
 use crate::field::{BATCH, Bounded, Enclosure, Evaluator, Facts, Field, Frame, Jet, Within};
 use crate::math::{Bounds, Interval, Sym3};
+use crate::slices;
 use core::fmt::{self, Debug, Formatter};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
@@ -46,12 +47,13 @@ impl Debug for ImageField {
 }
 
 impl ImageField {
-    pub(super) fn new(image: &Image, iso: f64, is_inverted: bool) -> Result<Self, ImageError> {
+    /// The surface at an iso value, made in slices of work.
+    pub(crate) async fn made(image: &Image, iso: f64, is_inverted: bool) -> Result<Self, ImageError> {
         let [min, max] = image.range;
         if !(iso > min && iso < max) {
             return Err(ImageError::Outside { iso, min, max });
         }
-        let bricks = Arc::new(Bricks::new(image, iso, is_inverted));
+        let bricks = Arc::new(Bricks::made(image, iso, is_inverted).await);
         Ok(Self { image: image.clone(), iso, is_inverted, bricks })
     }
 
@@ -59,7 +61,7 @@ impl ImageField {
     #[must_use]
     pub fn inverted(self) -> Self {
         let is_inverted = !self.is_inverted;
-        let bricks = Arc::new(Bricks::new(&self.image, self.iso, is_inverted));
+        let bricks = Arc::new(slices::complete(Bricks::made(&self.image, self.iso, is_inverted)));
         Self { is_inverted, bricks, ..self }
     }
 

@@ -12,6 +12,8 @@
 //! surface that the border cuts.
 
 use super::Image;
+use super::smooth::add_up;
+use crate::slices::{LIGHT, Meter};
 use std::collections::VecDeque;
 
 /// Weights of the filter on each side. The next weight would be 6 · 10⁻⁸ of the middle one, the
@@ -33,19 +35,6 @@ fn weights() -> [f32; REACH + 1] {
     }
     let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
     weights.map(|weight| (weight / sum) as f32)
-}
-
-/// Filters a row, or several at once: `of(k)` returns the values k steps further along the axis.
-fn filter<'a>(weights: &[f32; REACH + 1], of: impl Fn(isize) -> &'a [f32], out: &mut [f32]) {
-    for (out, middle) in out.iter_mut().zip(of(0)) {
-        *out = weights[0] * middle;
-    }
-    // The smallest weights are added last, always in the same order.
-    for (k, weight) in (0..).zip(weights).skip(1) {
-        for ((out, behind), ahead) in out.iter_mut().zip(of(-k)).zip(of(k)) {
-            *out += weight * (behind + ahead);
-        }
-    }
 }
 
 /// A value beyond the end of a row: `sign` times the value at `at`, plus `first` times the first
@@ -117,37 +106,43 @@ impl<'a> Planes<'a> {
 
     /// The next plane of coefficients, relative to the middle of the image's range: rows of
     /// `size[0]` + [`BEYOND`] values. There are `size[2]` + [`BEYOND`] planes.
-    pub(super) fn next_plane(&mut self) -> Vec<f32> {
+    pub(super) async fn next_plane(&mut self, meter: &mut Meter) -> Vec<f32> {
         let reach = REACH as isize;
         while self.first < self.next - reach {
             self.window.pop_front();
             self.first += 1;
         }
         while self.first + (self.window.len() as isize) <= self.next + reach {
-            let plane = self.plane_at(self.first + self.window.len() as isize);
+            let plane = self.plane_at(self.first + self.window.len() as isize, meter).await;
             self.window.push_back(plane);
         }
         let mut out = vec![0.0; self.width * self.height];
         let middle = self.next - self.first;
-        filter(&self.weights, |k| self.window[(middle + k) as usize].as_slice(), &mut out);
+        for (n, out) in out.chunks_mut(LIGHT).enumerate() {
+            let part = n * LIGHT..n * LIGHT + out.len();
+            let at = |k: isize| &self.window[(middle + k) as usize][part.clone()];
+            add_up(&self.weights, at, out);
+            meter.add(out.len()).await;
+        }
         self.next += 1;
         out
     }
 
     /// A plane that is filtered along the first two axes; `k` may lie beyond the image.
-    fn plane_at(&mut self, k: isize) -> Vec<f32> {
+    async fn plane_at(&mut self, k: isize, meter: &mut Meter) -> Vec<f32> {
         let depth = self.image.size[2];
         if (0..depth as isize).contains(&k) {
-            return self.filtered(k as usize);
+            return self.filtered(k as usize, meter).await;
         }
         let ends = match self.ends.take() {
             Some(ends) => ends,
-            None => [self.filtered(0), self.filtered(depth - 1)],
+            None => [self.filtered(0, meter).await, self.filtered(depth - 1, meter).await],
         };
         let place = reflected(k, depth);
         let held = (place.at as isize - self.first) as usize;
-        let own = if self.window.get(held).is_some() { Vec::new() } else { self.filtered(place.at) };
-        let at: &[f32] = if own.is_empty() { &self.window[held] } else { &own };
+        let is_held = self.window.get(held).is_some();
+        let own = if is_held { Vec::new() } else { self.filtered(place.at, meter).await };
+        let at: &[f32] = if is_held { &self.window[held] } else { &own };
         let mut out = vec![0.0; at.len()];
         let row = |j: usize| {
             if j == 0 {
@@ -164,7 +159,7 @@ impl<'a> Planes<'a> {
     }
 
     /// A plane of the image, filtered along the first two axes.
-    fn filtered(&self, k: usize) -> Vec<f32> {
+    async fn filtered(&self, k: usize, meter: &mut Meter) -> Vec<f32> {
         let [width, height, _] = self.image.size;
         let room = BEFORE + REACH;
         let zero = self.image.middle();
@@ -175,16 +170,16 @@ impl<'a> Planes<'a> {
             self.image.row(j, k, zero, &mut line[room..room + width]);
             extend(&mut line, 1, width);
             let out = &mut rows[self.width * (j + room)..][..self.width];
-            let at = |step: isize| &line[(REACH as isize + step) as usize..][..out.len()];
-            let mut filtered = vec![0.0; out.len()];
-            filter(&self.weights, at, &mut filtered);
-            out.copy_from_slice(&filtered);
+            let at = |step: isize| &line[(REACH as isize + step) as usize..][..self.width];
+            add_up(&self.weights, at, out);
+            meter.add(self.width).await;
         }
         extend(&mut rows, self.width, height);
         let mut out = vec![0.0; self.width * self.height];
         for (j, out) in out.chunks_mut(self.width).enumerate() {
             let at = |step: isize| &rows[self.width * ((j + REACH) as isize + step) as usize..][..self.width];
-            filter(&self.weights, at, out);
+            add_up(&self.weights, at, out);
+            meter.add(self.width).await;
         }
         out
     }
@@ -206,6 +201,7 @@ fn extend(rows: &mut [f32], width: usize, n: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::slices::complete;
     use rand_core::{Rng, SeedableRng};
     use rand_pcg::Pcg32;
 
@@ -260,11 +256,11 @@ mod tests {
             let voxels: Vec<f64> = (0..count).map(|_| f64::from(random.next_u32()) / 4e9).collect();
             let image = Image::new(size, &voxels).expect("an image");
             let wanted = oracle(size, &voxels);
-            let mut planes = Planes::new(&image);
+            let (mut planes, mut meter) = (Planes::new(&image), Meter::default());
             let mut worst = 0.0_f64;
             let (width, height) = (size[0] + BEYOND, size[1] + BEYOND);
             for k in 0..size[2] + BEYOND {
-                let plane = planes.next_plane();
+                let plane = complete(planes.next_plane(&mut meter));
                 for (at, found) in plane.iter().enumerate() {
                     let [i, j] = [at % width, at / width];
                     // The outermost coefficients are beyond those of the oracle.

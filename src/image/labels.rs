@@ -1,14 +1,15 @@
 //! Labels: whole numbers that assign each voxel to an organ, grain or phase.
 
 use super::smooth::{blur, deviations};
-use super::voxels::Voxels;
 use super::{Image, ImageError};
+use crate::slices::{self, LIGHT, Meter};
 use std::collections::BTreeMap;
 
 /// Width of the Gaussian over the distances from a label, in voxels. Smaller: the steps between
 /// voxels show in the normals. Larger: corners are rounded more.
 pub const DEFAULT_LABEL_WIDTH: f64 = 1.0;
-/// Most labels of an image. With more different values they are grey values.
+/// Number of different values up to which whole numbers count as labels. With more they are grey
+/// values.
 const MOST_LABELS: usize = 4096;
 /// Share of a label's voxels that the Gaussian may move outside the surface without a note.
 const LOST: f64 = 0.05;
@@ -27,16 +28,34 @@ impl Image {
     /// whole numbers or there are more than 4096 different ones.
     #[must_use]
     pub fn labels(&self) -> Vec<Label> {
+        slices::complete(self.up_to(MOST_LABELS))
+    }
+
+    /// [`Image::labels`] in slices of work; empty if there are more than `most`.
+    pub(crate) async fn up_to(&self, most: usize) -> Vec<Label> {
         let mut counts: BTreeMap<i64, u64> = BTreeMap::new();
         let mut are_labels = true;
-        self.voxels.for_each(|value| {
-            are_labels &= libm::trunc(value) == value && value.abs() < 1e15;
-            if are_labels {
-                *counts.entry(value as i64).or_default() += 1;
-                are_labels &= counts.len() <= MOST_LABELS;
-            }
-        });
-        if !are_labels {
+        // Neighbours often have the same label: a run of them is looked up once.
+        let (mut label, mut run) = (0, 0);
+        self.voxels
+            .for_each(|_, values| {
+                for &value in values {
+                    let own = value as i64;
+                    are_labels &= own as f64 == value && value.abs() < 1e15;
+                    if !are_labels {
+                        return;
+                    }
+                    if own != label && run > 0 {
+                        *counts.entry(label).or_default() += run;
+                        are_labels = counts.len() <= most;
+                        run = 0;
+                    }
+                    (label, run) = (own, run + 1);
+                }
+            })
+            .await;
+        *counts.entry(label).or_default() += run;
+        if !are_labels || counts.len() > most {
             return Vec::new();
         }
         counts.into_iter().map(|(value, voxels)| Label { value: value as f64, voxels }).collect()
@@ -58,26 +77,51 @@ impl Image {
     /// [`ImageError::NoLabel`] if no voxel or every voxel has the label, [`ImageError::Thin`] if
     /// the Gaussian removes it, [`ImageError::Width`] if the width is not in 0 to 100.
     pub fn label(&self, value: f64, width: f64) -> Result<Self, ImageError> {
+        slices::complete(self.distance_from(value, width))
+    }
+
+    /// [`Image::label`] in slices of work.
+    pub(super) async fn distance_from(&self, value: f64, width: f64) -> Result<Self, ImageError> {
         if !(0.0..=100.0).contains(&width) {
             return Err(ImageError::Width { width });
         }
-        let mut is_inside = Vec::with_capacity(self.voxels.len());
-        self.voxels.for_each(|voxel| is_inside.push(voxel == value));
-        let count = is_inside.iter().filter(|inside| **inside).count();
-        if count == 0 || count == is_inside.len() {
-            let known = self.labels().iter().map(|label| label.value).collect();
+        let mut count = 0;
+        let mut distances = Vec::with_capacity(self.voxels.len());
+        self.voxels
+            .for_each(|_, values| {
+                count += values.iter().filter(|own| **own == value).count();
+                distances.extend(values.iter().map(|&own| if own == value { f32::INFINITY } else { 0.0 }));
+            })
+            .await;
+        if count == 0 || count == distances.len() {
+            let known = self.up_to(MOST_LABELS).await.iter().map(|label| label.value).collect();
             return Err(ImageError::NoLabel { value, count, known });
         }
         let spacing = self.placement.spacing();
-        let mut distances = squared_distances(self.size, spacing, |at| !is_inside[at]);
-        let outside = squared_distances(self.size, spacing, |at| is_inside[at]);
-        let half = 0.5 * spacing.into_iter().fold(f64::INFINITY, f64::min) as f32;
-        for ((distance, outside), is_inside) in distances.iter_mut().zip(outside).zip(&is_inside) {
-            *distance = if *is_inside { distance.sqrt() - half } else { half - outside.sqrt() };
+        let mut outside: Vec<f32> = Vec::with_capacity(distances.len());
+        let mut meter = Meter::default();
+        for own in distances.chunks(LIGHT) {
+            outside.extend(own.iter().map(|&own| if own == 0.0 { f32::INFINITY } else { 0.0 }));
+            meter.add(own.len()).await;
         }
-        blur(self.size, &mut distances, deviations(self, width));
-        let lost =
-            distances.iter().zip(&is_inside).filter(|(value, inside)| **inside && **value <= 0.0).count();
+        squared_distances(self.size, spacing, &mut distances).await;
+        squared_distances(self.size, spacing, &mut outside).await;
+        let half = 0.5 * spacing.into_iter().fold(f64::INFINITY, f64::min) as f32;
+        for (distances, outside) in distances.chunks_mut(LIGHT).zip(outside.chunks(LIGHT)) {
+            for (distance, outside) in distances.iter_mut().zip(outside) {
+                *distance = if *distance > 0.0 { distance.sqrt() - half } else { half - outside.sqrt() };
+            }
+            meter.add(distances.len()).await;
+        }
+        drop(outside);
+        blur(self.size, &mut distances, deviations(self, width)).await;
+        let mut lost = 0;
+        self.voxels
+            .for_each(|begin, values| {
+                let both = distances[begin..].iter().zip(values);
+                lost += both.filter(|(distance, own)| **own == value && **distance <= 0.0).count();
+            })
+            .await;
         if lost == count {
             return Err(ImageError::Thin { value, width });
         }
@@ -89,28 +133,28 @@ impl Image {
                 100.0 * lost as f64 / count as f64
             ));
         }
-        let image = Self::of(self.size, Voxels::new(&distances))?;
+        let image = Self::filtered(self.size, distances).await?;
         Ok(Self { placement: self.placement, notes: notes.into(), ..image })
     }
 }
 
-/// The squared distances from each voxel to the nearest voxel of a set that is not empty.
-fn squared_distances(size: [usize; 3], spacing: [f64; 3], is_in: impl Fn(usize) -> bool) -> Vec<f32> {
-    let count: usize = size.iter().product();
-    let mut squares: Vec<f32> = (0..count).map(|at| if is_in(at) { 0.0 } else { f32::INFINITY }).collect();
+/// Replaces 0 in the voxels of a set, and infinity elsewhere, by the squared distances to the
+/// nearest voxel of the set, in slices of work. The set is not empty.
+async fn squared_distances(size: [usize; 3], spacing: [f64; 3], squares: &mut [f32]) {
     let strides = [1, size[0], size[0] * size[1]];
+    let mut meter = Meter::default();
     for axis in 0..3 {
         let (n, stride) = (size[axis], strides[axis]);
         let mut envelope = Envelope::new(n, spacing[axis]);
         let mut line = vec![0.0; n];
-        for start in (0..count).filter(|at| at / stride % n == 0) {
+        for start in (0..squares.len()).step_by(n * stride).flat_map(|first| first..first + stride) {
             for (k, value) in line.iter_mut().enumerate() {
                 *value = f64::from(squares[start + stride * k]);
             }
             envelope.lower(&line, |k, value| squares[start + stride * k] = value as f32);
+            meter.add(n).await;
         }
     }
-    squares
 }
 
 /// The lower envelope of the parabolas at the points of a line.
@@ -169,7 +213,9 @@ mod tests {
         for (size, spacing) in [([5, 4, 6], [1.0, 1.0, 1.0]), ([7, 3, 4], [0.5, 2.0, 1.25])] {
             let count: usize = size.iter().product();
             let is_in: Vec<bool> = (0..count).map(|at| at == 0 || random.next_u32() % 9 == 0).collect();
-            let found = squared_distances(size, spacing, |at| is_in[at]);
+            let mut found: Vec<f32> =
+                is_in.iter().map(|is_in| if *is_in { 0.0 } else { f32::INFINITY }).collect();
+            slices::complete(squared_distances(size, spacing, &mut found));
             let place = |at: usize| {
                 let steps = [at % size[0], at / size[0] % size[1], at / size[0] / size[1]];
                 [0, 1, 2].map(|a| steps[a] as f64 * spacing[a])

@@ -4,9 +4,11 @@
 //! it at one grey value, the *iso value*: the zero set of iso value minus a cubic spline through
 //! all voxels. [`Image::read`] reads a file, [`Image::new`] takes a program's array.
 
+mod border;
 mod bounds;
 mod bricks;
 mod choice;
+mod coarser;
 mod field;
 mod filter;
 mod kernel;
@@ -14,6 +16,7 @@ mod labels;
 mod otsu;
 mod placement;
 mod read;
+mod section;
 mod smooth;
 mod voxels;
 
@@ -22,13 +25,15 @@ pub use field::ImageField;
 pub use labels::{DEFAULT_LABEL_WIDTH, Label};
 pub use placement::Placement;
 pub use read::{ImageFormat, ImageOutline, ImageReadError, MAX_IMAGE_BYTES, RawVoxels};
+pub use section::Section;
 pub(crate) use smooth::blur;
 pub use voxels::{Voxel, VoxelType};
 
+use crate::slices;
 use core::fmt::{self, Debug, Formatter};
 use glam::{DMat3, DVec3};
 use otsu::Histogram;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use voxels::{Layout, Voxels};
 
 /// Why an image cannot become a field. The message says what is wrong, where, and what to do.
@@ -129,7 +134,7 @@ pub enum ImageError {
 
 /// Why a label has no surface.
 fn no_label(value: f64, count: usize, known: &[f64]) -> String {
-    /// Most labels that a message lists.
+    /// Number of labels that a message lists, at most.
     const LISTED: usize = 20;
     if count > 0 {
         return format!("all voxels have the label {value}, so it has no boundary in the image");
@@ -171,6 +176,8 @@ pub struct Image {
     voxels: Voxels,
     placement: Placement,
     range: [f64; 2],
+    /// Counted when it is first asked for.
+    histogram: Arc<OnceLock<Histogram>>,
     notes: Arc<[String]>,
 }
 
@@ -195,7 +202,7 @@ impl Image {
     /// [`ImageError::Size`], [`Flat`](ImageError::Flat), [`NotFinite`](ImageError::NotFinite) or
     /// [`Constant`](ImageError::Constant).
     pub fn new<T: Voxel>(size: [usize; 3], voxels: impl AsRef<[T]>) -> Result<Self, ImageError> {
-        Self::of(size, Voxels::new(voxels.as_ref()))
+        slices::complete(Self::of(size, Voxels::new(voxels.as_ref())))
     }
 
     /// [`Image::new`] from the bytes of numbers, in the byte order of the machine.
@@ -213,11 +220,16 @@ impl Image {
         let wanted = size.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
         let wrong = ImageError::Size { size, wanted, found: len as u64 };
         let layout = Layout::plain(voxel_type, cfg!(target_endian = "big"));
-        Self::of(size, Voxels::of_file(bytes, layout, len).ok_or(wrong)?)
+        slices::complete(Self::of(size, Voxels::of_file(bytes, layout, len).ok_or(wrong)?))
     }
 
-    /// The image with these voxels, one unit apart.
-    fn of(size: [usize; 3], voxels: Voxels) -> Result<Self, ImageError> {
+    /// [`Image::new`] of the result of a filter, in slices of work.
+    pub(crate) async fn filtered(size: [usize; 3], voxels: Vec<f32>) -> Result<Self, ImageError> {
+        Self::of(size, Voxels::filtered(voxels)).await
+    }
+
+    /// The image with these voxels, one unit apart, checked in slices of work.
+    async fn of(size: [usize; 3], voxels: Voxels) -> Result<Self, ImageError> {
         let wanted = size.iter().try_fold(1_u64, |product, &n| product.checked_mul(n as u64));
         let found = voxels.len() as u64;
         if wanted != Some(found) {
@@ -226,14 +238,15 @@ impl Image {
         if size.iter().any(|&n| n < 2) {
             return Err(ImageError::Flat { size });
         }
-        let range = voxels.range().map_err(|(count, first)| {
+        let range = voxels.range().await.map_err(|(count, first)| {
             let first = [first % size[0], first / size[0] % size[1], first / size[0] / size[1]];
             ImageError::NotFinite { count, first }
         })?;
         if range[0] == range[1] {
             return Err(ImageError::Constant { value: range[0] });
         }
-        Ok(Self { size, voxels, placement: Placement::default(), range, notes: Arc::default() })
+        let placement = Placement::default();
+        Ok(Self { size, voxels, placement, range, histogram: Arc::default(), notes: Arc::default() })
     }
 
     /// Sets the distances between neighbouring voxels along each axis; origin and directions stay.
@@ -282,7 +295,7 @@ impl Image {
     ///
     /// [`ImageError::Outside`] if no voxel, or every voxel, is brighter.
     pub fn at(&self, iso: f64) -> Result<ImageField, ImageError> {
-        ImageField::new(self, iso, false)
+        slices::complete(ImageField::made(self, iso, false))
     }
 
     /// Number of voxels along each axis.
@@ -320,14 +333,22 @@ impl Image {
     /// Gray-Level Histograms", IEEE Transactions on Systems, Man, and Cybernetics 9, 1979).
     #[must_use]
     pub fn otsu(&self) -> f64 {
-        Histogram::of(self).otsu()
+        slices::complete(self.counted()).otsu()
     }
 
     /// The number of voxels in each of 256 bins of equal width, from the smallest value to the
     /// largest.
     #[must_use]
     pub fn histogram(&self) -> Vec<u64> {
-        Histogram::of(self).counts()
+        slices::complete(self.counted()).counts().to_vec()
+    }
+
+    /// The histogram, which is counted once, in slices of work.
+    pub(crate) async fn counted(&self) -> &Histogram {
+        if self.histogram.get().is_none() {
+            let _ = self.histogram.set(Histogram::of(self).await);
+        }
+        self.histogram.get().expect("it was counted")
     }
 
     /// Bytes of memory that the voxels take.

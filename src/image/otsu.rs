@@ -7,7 +7,8 @@ const BINS: usize = 256;
 
 /// The numbers of voxels whose values lie in each of [`BINS`] bins of equal width, from the
 /// smallest value to the largest.
-pub(super) struct Histogram {
+#[derive(Debug)]
+pub(crate) struct Histogram {
     counts: Vec<u64>,
     /// The smallest value.
     min: f64,
@@ -16,22 +17,28 @@ pub(super) struct Histogram {
 }
 
 impl Histogram {
-    pub(super) fn of(image: &Image) -> Self {
+    /// Counts the voxels in slices of work.
+    pub(super) async fn of(image: &Image) -> Self {
         let [min, max] = image.range;
         let width = (max - min) / BINS as f64;
         let mut counts = vec![0; BINS];
-        image.voxels.for_each(|value| counts[(((value - min) / width) as usize).min(BINS - 1)] += 1);
+        let count = |_: usize, values: &[f64]| {
+            for value in values {
+                counts[(((value - min) / width) as usize).min(BINS - 1)] += 1;
+            }
+        };
+        image.voxels.for_each(count).await;
         Self { counts, min, width }
     }
 
     /// Number of voxels in each bin.
-    pub(super) fn counts(self) -> Vec<u64> {
-        self.counts
+    pub(crate) fn counts(&self) -> &[u64] {
+        &self.counts
     }
 
     /// The edge between two bins for which the variance between the classes, w₀ w₁ (μ₁ − μ₀)², is
     /// largest (Otsu's equation 14). If several edges tie, as between two peaks, the middle one.
-    pub(super) fn otsu(&self) -> f64 {
+    pub(crate) fn otsu(&self) -> f64 {
         let [first, last] = self.best();
         self.min + self.width * (0.5 * (first + last) as f64 + 1.0)
     }

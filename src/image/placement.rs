@@ -54,6 +54,16 @@ impl Placement {
         Self::new(DMat3::from_cols(column(0), column(1), column(2)), column(3))
     }
 
+    /// The placement whose voxel (0, 0, 0) lies at these indices of this one.
+    pub(super) fn at_index(&self, index: DVec3) -> Result<Self, ImageError> {
+        Self::new(self.matrix, self.point(index))
+    }
+
+    /// The placement with this many times the step from voxel to voxel.
+    pub(super) fn coarser(&self, times: f64) -> Result<Self, ImageError> {
+        Self::new(self.matrix * times, self.origin)
+    }
+
     /// The point of voxel (0, 0, 0).
     #[must_use]
     pub fn origin(&self) -> DVec3 {

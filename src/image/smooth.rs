@@ -1,12 +1,15 @@
 //! Gaussians against noise, and estimates of the noise of an image.
 
-use super::voxels::Voxels;
 use super::{Image, ImageError};
 use crate::math::median;
+use crate::slices::{self, LIGHT, Meter};
+use core::ops::Range;
+use std::collections::VecDeque;
 
 /// The weights of a Gaussian end below e^−8, a three-thousandth of the middle one.
 const REACH: f64 = 4.0;
-/// Most voxels along each axis at which the noise is measured; the median hardly changes with more.
+/// Number of voxels along each axis at which the noise is measured, at most; the median hardly
+/// changes with more.
 const SAMPLED: usize = 32;
 /// Distance, in voxels, by which noise may still move the surface: its standard deviation divided
 /// by the slope of the values. At an edge that a scanner has blurred by 0.8 voxels it is one
@@ -22,7 +25,8 @@ const WIDEST_AGAINST_ROUNDING: f64 = 1.0;
 const WIDTHS_IN_A_VOXEL: f64 = 10.0;
 /// Standard deviation of the error of rounding to whole numbers, 1/√12.
 const ROUNDING: f64 = 0.288_675_134_594_812_9;
-/// Most voxels along each axis at which the slope is measured; those near the surface count.
+/// Number of voxels along each axis at which the slope is measured, at most; those near the surface
+/// count.
 const SCANNED: usize = 64;
 
 /// The standard deviations of a Gaussian along the axes, in voxels. Its length in space is `width`
@@ -46,33 +50,90 @@ fn gaussian(deviation: f64) -> Vec<f32> {
     weights.iter().map(|weight| (weight / sum) as f32).collect()
 }
 
-/// Blurs voxels by a Gaussian along each axis in turn. Voxels beyond the border have the value of
-/// the border.
-pub(crate) fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
-    let strides = [1, size[0], size[0] * size[1]];
-    for axis in 0..3 {
-        let weights = gaussian(deviations[axis]);
-        if weights.len() == 1 {
+/// Blurs voxels by a Gaussian along each axis in turn, in slices of work. Voxels beyond the border
+/// have the value of the border.
+pub(crate) async fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
+    let mut meter = Meter::default();
+    let weights = deviations.map(gaussian);
+    if weights[0].len() > 1 {
+        let reach = weights[0].len() - 1;
+        let mut line = vec![0.0; size[0] + 2 * reach];
+        for row in voxels.chunks_mut(size[0]) {
+            line[..reach].fill(row[0]);
+            line[reach..][..row.len()].copy_from_slice(row);
+            line[reach + row.len()..].fill(row[row.len() - 1]);
+            add_up(&weights[0], |k| &line[(reach as isize + k) as usize..], row);
+            meter.add(row.len()).await;
+        }
+    }
+    for (axis, stride) in [(1, size[0]), (2, size[0] * size[1])] {
+        if weights[axis].len() == 1 {
             continue;
         }
-        let (n, stride) = (size[axis], strides[axis]);
-        // Adjacent lines along the axis are filtered together.
-        let mut lines = vec![0.0; n * stride];
-        for voxels in voxels.chunks_mut(n * stride) {
-            lines.copy_from_slice(voxels);
-            for (at, out) in voxels.chunks_mut(stride).enumerate() {
-                let line = |k: usize| &lines[k * stride..][..stride];
-                for (out, middle) in out.iter_mut().zip(line(at)) {
-                    *out = weights[0] * middle;
+        for voxels in voxels.chunks_mut(size[axis] * stride) {
+            // Adjacent lines along the axis are filtered together, as many as fit the cache.
+            for first in (0..stride).step_by(LIGHT) {
+                let lines = first..stride.min(first + LIGHT);
+                blur_lines(voxels, stride, lines, &weights[axis], &mut meter).await;
+            }
+        }
+    }
+}
+
+/// Blurs adjacent lines, whose voxels are `stride` apart.
+async fn blur_lines(
+    voxels: &mut [f32],
+    stride: usize,
+    lines: Range<usize>,
+    weights: &[f32],
+    meter: &mut Meter,
+) {
+    let last = voxels.len() / stride - 1;
+    // The voxels at the present place of the lines and before it, which have been overwritten.
+    let mut before: VecDeque<Vec<f32>> = VecDeque::with_capacity(weights.len());
+    for at in 0..=last {
+        let mut own =
+            if before.len() == weights.len() { before.pop_front() } else { None }.unwrap_or_default();
+        let (done, rest) = voxels.split_at_mut((at + 1) * stride);
+        let out = &mut done[at * stride..][lines.clone()];
+        own.clear();
+        own.extend_from_slice(out);
+        before.push_back(own);
+        let behind = |k: usize| before[before.len() - 1 - k.min(at)].as_slice();
+        let ahead = |k: usize| match k.min(last - at) {
+            0 => behind(0),
+            k => &rest[(k - 1) * stride..][lines.clone()],
+        };
+        add_up(weights, |k| if k < 0 { behind(k.unsigned_abs()) } else { ahead(k as usize) }, out);
+        meter.add(out.len()).await;
+    }
+}
+
+/// Filters several values at once by symmetric weights: `of(k)` returns the values k steps further
+/// along the axis.
+pub(super) fn add_up<'a>(weights: &[f32], of: impl Fn(isize) -> &'a [f32], out: &mut [f32]) {
+    /// Values whose sums stay in registers.
+    const AT_ONCE: usize = 32;
+    for (n, out) in out.chunks_mut(AT_ONCE).enumerate() {
+        let part = |k: isize| &of(k)[AT_ONCE * n..][..out.len()];
+        let mut sums = [0.0; AT_ONCE];
+        for (sum, middle) in sums.iter_mut().zip(part(0)) {
+            *sum = weights[0] * middle;
+        }
+        // The smallest weights are added last, always in the same order.
+        for (k, weight) in (0..).zip(weights).skip(1) {
+            let (behind, ahead) = (part(-k), part(k));
+            if let ([behind], [ahead]) = (behind.as_chunks::<AT_ONCE>().0, ahead.as_chunks::<AT_ONCE>().0) {
+                for i in 0..AT_ONCE {
+                    sums[i] += weight * (behind[i] + ahead[i]);
                 }
-                for (k, weight) in weights.iter().enumerate().skip(1) {
-                    let (behind, ahead) = (line(at.saturating_sub(k)), line((at + k).min(n - 1)));
-                    for ((out, behind), ahead) in out.iter_mut().zip(behind).zip(ahead) {
-                        *out += weight * (behind + ahead);
-                    }
+            } else {
+                for (sum, (behind, ahead)) in sums.iter_mut().zip(behind.iter().zip(ahead)) {
+                    *sum += weight * (behind + ahead);
                 }
             }
         }
+        out.copy_from_slice(&sums[..out.len()]);
     }
 }
 
@@ -87,16 +148,27 @@ impl Image {
     /// [`ImageError::Width`] if the width is not in 0 to 100, [`ImageError::Constant`] if all
     /// voxels become equal.
     pub fn smoothed(&self, width: f64) -> Result<Self, ImageError> {
+        slices::complete(self.blurred(width))
+    }
+
+    /// [`Image::smoothed`] in slices of work.
+    pub(super) async fn blurred(&self, width: f64) -> Result<Self, ImageError> {
         if !(0.0..=100.0).contains(&width) {
             return Err(ImageError::Width { width });
         }
         let zero = self.middle();
         let mut voxels = vec![0.0; self.voxels.len()];
-        self.voxels.write(0, zero, &mut voxels);
-        blur(self.size, &mut voxels, deviations(self, width));
+        for (k, voxels) in voxels.chunks_mut(LIGHT).enumerate() {
+            self.voxels.write(LIGHT * k, zero, voxels);
+            slices::pause().await;
+        }
+        blur(self.size, &mut voxels, deviations(self, width)).await;
         // Relative to zero again, as in the file.
-        voxels.iter_mut().for_each(|value| *value = (f64::from(*value) + zero) as f32);
-        let image = Self::of(self.size, Voxels::new(&voxels))?;
+        for voxels in voxels.chunks_mut(LIGHT) {
+            voxels.iter_mut().for_each(|value| *value = (f64::from(*value) + zero) as f32);
+            slices::pause().await;
+        }
+        let image = Self::filtered(self.size, voxels).await?;
         Ok(Self { placement: self.placement, notes: self.notes.clone(), ..image })
     }
 
@@ -108,6 +180,11 @@ impl Image {
     /// underestimated.
     #[must_use]
     pub fn noise(&self) -> f64 {
+        slices::complete(self.measured_noise())
+    }
+
+    /// [`Image::noise`] in slices of work.
+    pub(super) async fn measured_noise(&self) -> f64 {
         /// √(1² + 2² + 1²)³, by which the noise is amplified in these differences.
         const GAIN: f64 = 14.696_938_456_699_069;
         /// The median of the absolute value of a standard normal variable.
@@ -130,6 +207,7 @@ impl Image {
                     }
                     sizes.push(difference.abs());
                 }
+                slices::pause().await;
             }
         }
         median(sizes).unwrap_or(0.0) / (MEDIAN * GAIN)
@@ -145,9 +223,13 @@ impl Image {
     /// A Gaussian of σ voxels lowers independent noise by the factor (4πσ²)^(3/4).
     #[must_use]
     pub fn width_against_noise(&self, iso: f64) -> f64 {
-        let noise = self.noise();
+        slices::complete(async { self.width_at(iso, self.measured_noise().await).await })
+    }
+
+    /// [`Image::width_against_noise`] for noise that is known, in slices of work.
+    pub(super) async fn width_at(&self, iso: f64, noise: f64) -> f64 {
         let rounding = ROUNDING * self.voxels.step();
-        let slope = self.slope(iso, noise.max(rounding));
+        let slope = self.slope(iso, noise.max(rounding)).await;
         let width_for = |deviation: f64, widest: f64| {
             // Without a slope there is no surface, and any width will do.
             let excess = deviation / (LEFT * slope);
@@ -166,11 +248,11 @@ impl Image {
     /// The median size of the gradient where the values cross `iso` between two neighbours, per
     /// voxel of the coarser of the two smaller spacings, less the contribution of noise with this
     /// standard deviation; infinite if there is no such point.
-    fn slope(&self, iso: f64, noise: f64) -> f64 {
-        let mut squares = self.squared_slopes(iso, self.size.map(|n| n.div_ceil(SCANNED)));
+    pub(super) async fn slope(&self, iso: f64, noise: f64) -> f64 {
+        let mut squares = self.squared_slopes(iso, self.size.map(|n| n.div_ceil(SCANNED))).await;
         if squares.is_empty() {
             // Small parts may lie between the measured voxels.
-            squares = self.squared_slopes(iso, [1; 3]);
+            squares = self.squared_slopes(iso, [1; 3]).await;
         }
         let Some(median) = median(squares) else { return f64::INFINITY };
         // The variance of one difference, and of the means of two in [`Image::squared_slope`].
@@ -179,7 +261,7 @@ impl Image {
     }
 
     /// The squared gradients at voxels that are these steps apart.
-    fn squared_slopes(&self, iso: f64, steps: [usize; 3]) -> Vec<f64> {
+    async fn squared_slopes(&self, iso: f64, steps: [usize; 3]) -> Vec<f64> {
         let [width, height, depth] = self.size;
         let zero = self.middle();
         let level = (iso - zero) as f32;
@@ -203,6 +285,7 @@ impl Image {
                         }
                     }
                 }
+                slices::pause().await;
             }
         }
         squares

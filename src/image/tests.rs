@@ -1,11 +1,12 @@
 //! Fields of images, held to the functions that the images were made from.
 
-use super::{Image, ImageChoice, ImageError, ImageField};
+use super::{Image, ImageChoice, ImageError, ImageField, Section};
 use crate::extent::{self, Reach};
 use crate::field::{Enclosure, Field, Frame};
 use crate::math::{Bounds, Interval, Sym3};
 use crate::run::{Report, sample};
 use crate::sampler::{Search, Settings};
+use crate::slices;
 use glam::{DVec3, Vec3, dvec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -33,6 +34,11 @@ fn torus(p: DVec3, middle: DVec3, [big, small]: [f64; 2]) -> f64 {
     let p = p - middle;
     let around = p.truncate().length() - big;
     libm::sqrt(around * around + p.z * p.z) - small
+}
+
+/// A function of the value of each voxel.
+fn mapped<T>(image: &Image, of: impl Fn(f64) -> T) -> Vec<T> {
+    (0..image.size().iter().product()).map(|at| of(image.voxels.at(at))).collect()
 }
 
 fn random_images() -> impl Iterator<Item = ImageField> {
@@ -461,4 +467,197 @@ fn what_is_no_image_is_refused_by_its_fault() {
     }
     let flat = [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0]];
     assert!(matches!(image.with_affine(flat), Err(ImageError::Singular { .. })));
+}
+
+#[test]
+fn a_gaussian_is_the_sum_of_its_definition() {
+    let mut random = Pcg32::seed_from_u64(5);
+    let size = [7, 5, 6];
+    let voxels: Vec<f64> = (0..7 * 5 * 6).map(|_| between(&mut random, -1.0, 1.0)).collect();
+    let image = Image::new(size, voxels).expect("an image");
+    // Spacings along the axes; the width counts in voxels of the second smallest.
+    for spacing in [[1.0; 3], [0.5, 1.0, 3.0]] {
+        let image = image.clone().with_spacing(spacing).expect("spacings");
+        let smooth = image.smoothed(0.9).expect("an image");
+        let weight = |axis: usize, steps: i64| {
+            let deviation = 0.9 / spacing[axis];
+            libm::exp(-0.5 * (steps as f64 / deviation) * (steps as f64 / deviation))
+        };
+        let reach = |axis: usize| libm::ceil(4.0 * 0.9 / spacing[axis]) as i64;
+        let total = |axis: usize| (-reach(axis)..=reach(axis)).map(|s| weight(axis, s)).sum::<f64>();
+        let totals = [total(0), total(1), total(2)];
+        let mut at = [0_i64; 3];
+        for index in 0..size.iter().product::<usize>() {
+            at = [index % size[0], index / size[0] % size[1], index / size[0] / size[1]].map(|i| i as i64);
+            let mut sum = 0.0;
+            for i in -reach(0)..=reach(0) {
+                for j in -reach(1)..=reach(1) {
+                    for k in -reach(2)..=reach(2) {
+                        let steps = [i, j, k];
+                        let place: [usize; 3] = core::array::from_fn(|a| {
+                            (at[a] + steps[a]).clamp(0, size[a] as i64 - 1) as usize
+                        });
+                        let weights: f64 = (0..3).map(|a| weight(a, steps[a]) / totals[a]).product();
+                        sum += weights * image.voxel(place);
+                    }
+                }
+            }
+            let found = smooth.voxel(at.map(|i| i as usize));
+            assert!((found - sum).abs() < 1e-5, "{spacing:?} {at:?}: {found} {sum}");
+        }
+        assert_eq!(at, size.map(|n| n as i64 - 1));
+    }
+}
+
+#[test]
+fn a_surface_made_in_slices_has_the_same_bits() {
+    let ball = image_of([40, 36, 44], |p| blurred((p - 18.3).length() - 12.0));
+    let labels = Image::new([40, 36, 44], mapped(&ball, |value| u8::from(value > 450.0))).expect("labels");
+    let grey = ImageChoice { smooth: Some(0.8), ..ImageChoice::default() };
+    let label = ImageChoice { label: Some(1.0), ..ImageChoice::default() };
+    for (image, choice) in [(ball, grey), (labels, label)] {
+        let whole = image.surface(&choice, None).expect("a surface");
+        let mut work = Box::pin(image.clone().surface_in_slices(choice, None));
+        let mut slices = 0;
+        let sliced = loop {
+            slices += 1;
+            if let Some(made) = slices::advance(work.as_mut(), 1) {
+                break made.expect("a surface");
+            }
+        };
+        // The estimate is a guide for a bar.
+        let expected = image.slices_of(&choice);
+        assert!((expected / 3..3 * expected).contains(&slices), "{slices} {expected}");
+        let mut random = Pcg32::seed_from_u64(1);
+        for _ in 0..500 {
+            let p = point_in(whole.field(), &mut random);
+            assert_eq!(sliced.field().value(p).to_bits(), whole.field().value(p).to_bits(), "{p}");
+        }
+    }
+}
+
+#[test]
+fn a_surface_that_the_border_cuts_can_be_closed_there() {
+    // A rod along z, and a ball in a corner of an image whose axes are turned.
+    let rod = image_of([32, 30, 20], |p| blurred((p - dvec3(16.0, 15.0, 0.0)).truncate().length() - 7.0));
+    let ball = image_of([30, 30, 30], |p| blurred((p - dvec3(2.0, 4.0, 3.0)).length() - 14.0));
+    let rows = [[0.8, -0.6, 0.0, 3.0], [0.6, 0.8, 0.0, 1.0], [0.0, 0.0, 1.5, -2.0]];
+    let ball = ball.with_affine(rows).expect("an affine map");
+    let dark = Image::new(rod.size(), mapped(&rod, |value| -value as f32)).expect("an image");
+    for (image, is_dark_inside) in [(rod, false), (ball, false), (dark, true)] {
+        let iso = if is_dark_inside { -450.0 } else { 450.0 };
+        let choice = ImageChoice {
+            iso: Some(iso),
+            smooth: Some(0.0),
+            is_dark_inside,
+            is_closed: true,
+            ..ImageChoice::default()
+        };
+        let surface = image.surface(&choice, None).expect("a surface");
+        let open =
+            image.surface(&ImageChoice { is_closed: false, ..choice }, Some(&surface)).expect("a surface");
+        let sample = sample(surface.field().clone(), &Settings::with_count(3_000)).expect("a sample");
+        let topology = &sample.mesh().topology;
+        assert!(topology.is_closed(), "{topology:?}");
+        assert_eq!(topology.euler(), 2);
+        let last = image.size().map(|n| n as f64 - 1.0);
+        for k in 0..sample.particles().len() {
+            let p = sample.particles().place(k);
+            let index = image.placement().index(p).to_array();
+            let beyond = (0..3).map(|a| (-index[a]).max(index[a] - last[a])).fold(f64::MIN, f64::max);
+            // Within the image the surface is the same, but for what the border adds to the spline;
+            // beyond it there is the cap at half a voxel, with rounded edges.
+            assert!(beyond < 0.7, "{index:?}");
+            if beyond < -3.0 {
+                let (value, gradient) = open.field().value_and_gradient(p);
+                assert!(value.abs() / gradient.length() < 0.01, "{index:?}: {value}");
+            }
+            let inner = (0..3).filter(|&a| index[a] > 2.0 && index[a] < last[a] - 2.0).count();
+            let depth = open.field().value(
+                image.placement().point(DVec3::from_array([0, 1, 2].map(|a| index[a].clamp(0.0, last[a])))),
+            );
+            if beyond > 0.3 && inner == 2 && depth < -300.0 {
+                assert!((beyond - 0.5).abs() < 0.05, "{index:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_section_holds_the_voxels_in_a_plane() {
+    // A linear function is interpolated exactly.
+    let f = |p: DVec3| 3.0 * p.x - 2.0 * p.y + 0.5 * p.z + 1.0;
+    let image = image_of([9, 8, 7], f);
+    let rows = [[0.5, 0.1, 0.0, 2.0], [0.0, -0.5, 0.0, 1.0], [0.0, 0.0, 2.0, -3.0]];
+    let image = image.with_affine(rows).expect("an affine map");
+    let place = image.placement();
+    let corner = place.point(dvec3(-1.0, 0.3, 2.2));
+    let steps = [dvec3(0.4, 0.2, 0.1), dvec3(0.1, 0.7, 0.3)].map(|step| place.matrix() * step);
+    let section = Section { corner, steps, size: [30, 14] };
+    let linear = image.section(&section, true);
+    let nearest = image.section(&section, false);
+    assert_eq!(linear.len(), 30 * 14);
+    let mut inside = 0;
+    for (at, (linear, nearest)) in linear.iter().zip(&nearest).enumerate() {
+        let (i, j) = ((at % 30) as f64, (at / 30) as f64);
+        let index = dvec3(-1.0, 0.3, 2.2) + i * dvec3(0.4, 0.2, 0.1) + j * dvec3(0.1, 0.7, 0.3);
+        let far = (index - dvec3(4.0, 3.5, 3.0)).abs() - dvec3(4.5, 4.0, 3.5);
+        if far.max_element().abs() < 1e-9 {
+            continue;
+        }
+        assert_eq!(linear.is_nan(), far.max_element() > 0.0, "{index}");
+        assert_eq!(nearest.is_nan(), linear.is_nan());
+        if linear.is_nan() {
+            continue;
+        }
+        inside += 1;
+        let held = index.clamp(DVec3::ZERO, dvec3(8.0, 7.0, 6.0));
+        assert!((f64::from(*linear) - f(held)).abs() < 1e-4, "{index}: {linear}");
+        assert!((f64::from(*nearest) - f(held)).abs() <= 0.5 * (3.0 + 2.0 + 0.5) + 1e-4, "{index}");
+        assert_eq!(f64::from(*nearest) * 2.0, libm::round(f64::from(*nearest) * 2.0));
+    }
+    assert!(inside > 50);
+}
+
+#[test]
+fn labels_are_counted_whatever_their_order() {
+    let mut random = Pcg32::seed_from_u64(9);
+    let voxels: Vec<i32> =
+        (0..1000).map(|_| [-5, 0, 7, 614_454_277][random.next_u32() as usize % 4]).collect();
+    let image = Image::new([10, 10, 10], &voxels).expect("an image");
+    let found: Vec<(f64, u64)> = image.labels().iter().map(|label| (label.value, label.voxels)).collect();
+    let count = |value: i32| voxels.iter().filter(|own| **own == value).count() as u64;
+    let wanted = [-5, 0, 7, 614_454_277].map(|value| (f64::from(value), count(value)));
+    assert_eq!(found, wanted);
+    let many: Vec<u16> = (0..8000).collect();
+    assert!(Image::new([20, 20, 20], &many).expect("an image").labels().is_empty());
+    let broken: Vec<f32> = (0..1000).map(|at| if at == 999 { 0.5 } else { 1.0 }).collect();
+    assert!(Image::new([10, 10, 10], &broken).expect("an image").labels().is_empty());
+}
+
+#[test]
+fn a_coarser_image_has_the_first_of_some_voxels_in_the_same_places() {
+    let voxels: Vec<i16> = (0..7 * 6 * 5).map(|at| ((at * 37) % 101) as i16).collect();
+    let rows = [[0.5, 0.1, 0.0, 2.0], [0.0, -0.5, 0.0, 1.0], [0.0, 0.0, 2.0, -3.0]];
+    let image = Image::new([7, 6, 5], &voxels).expect("an image").with_affine(rows).expect("an affine map");
+    let coarser = image.coarser(2).expect("an image");
+    assert_eq!((coarser.size(), coarser.voxel_type()), ([4, 3, 3], image.voxel_type()));
+    assert_eq!(coarser.bytes(), 2 * 4 * 3 * 3);
+    for k in 0..3 {
+        for j in 0..3 {
+            for i in 0..4 {
+                let fine = [2 * i, 2 * j, 2 * k];
+                assert_eq!(
+                    coarser.voxel([i, j, k]),
+                    f64::from(voxels[fine[0] + 7 * (fine[1] + 6 * fine[2])])
+                );
+                let point = |image: &Image, at: [usize; 3]| {
+                    image.placement().point(DVec3::from_array(at.map(|n| n as f64)))
+                };
+                assert!(point(&coarser, [i, j, k]).distance(point(&image, fine)) < 1e-12);
+            }
+        }
+    }
+    assert!(coarser.notes()[0].contains("one in 2"), "{:?}", coarser.notes());
+    assert!(matches!(image.coarser(5), Err(ImageError::Flat { size: [2, 2, 1] })));
 }

@@ -1,7 +1,9 @@
 //! The voxels of an image, in the type and byte order of their file.
 
+use crate::slices::{self, LIGHT, pause};
 use bytemuck::NoUninit;
 use core::fmt::{self, Display, Formatter};
+use core::ops::Range;
 use std::sync::Arc;
 
 /// The type of voxels in a file or an array.
@@ -129,10 +131,28 @@ impl Layout {
     }
 }
 
+/// The memory of voxels.
+enum Data {
+    /// The bytes of a file.
+    Bytes(Vec<u8>),
+    /// The result of a filter.
+    Filtered(Vec<f32>),
+}
+
+impl Data {
+    #[inline]
+    fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Bytes(bytes) => bytes,
+            Self::Filtered(numbers) => bytemuck::cast_slice(numbers),
+        }
+    }
+}
+
 /// A sequence of voxels, which copies share.
 #[derive(Clone)]
 pub(super) struct Voxels {
-    data: Arc<Vec<u8>>,
+    data: Arc<Data>,
     layout: Layout,
     len: usize,
 }
@@ -141,8 +161,15 @@ impl Voxels {
     /// The numbers of an array.
     pub(super) fn new<T: Voxel>(numbers: &[T]) -> Self {
         let layout = Layout::plain(T::TYPE, cfg!(target_endian = "big"));
-        let data = Arc::new(bytemuck::cast_slice(numbers).to_vec());
+        let data = Arc::new(Data::Bytes(bytemuck::cast_slice(numbers).to_vec()));
         Self { data, layout, len: numbers.len() }
+    }
+
+    /// The result of a filter, which is not copied.
+    pub(super) fn filtered(numbers: Vec<f32>) -> Self {
+        let layout = Layout::plain(VoxelType::F32, cfg!(target_endian = "big"));
+        let len = numbers.len();
+        Self { data: Arc::new(Data::Filtered(numbers)), layout, len }
     }
 
     /// The first `len` voxels of a file; none if it has fewer.
@@ -150,7 +177,7 @@ impl Voxels {
         let size = layout.voxel_type.bytes();
         let last = len.checked_sub(1)?.checked_mul(layout.step)?.checked_mul(size)?;
         let end = layout.first.checked_add(last)?.checked_add(size)?;
-        (end <= data.len()).then(|| Self { data: Arc::new(data), layout, len })
+        (end <= data.len()).then(|| Self { data: Arc::new(Data::Bytes(data)), layout, len })
     }
 
     pub(super) fn len(&self) -> usize {
@@ -158,7 +185,7 @@ impl Voxels {
     }
 
     pub(super) fn bytes(&self) -> usize {
-        self.data.len()
+        self.data.bytes().len()
     }
 
     /// Whether both are the same bytes in memory, read in the same way.
@@ -180,19 +207,27 @@ impl Voxels {
     fn read(&self, first: usize, out: &mut [f64]) {
         let Layout { voxel_type, is_big_endian, step, slope, intercept, .. } = self.layout;
         let size = voxel_type.bytes();
-        let from = &self.data[self.layout.first + first * step * size..];
+        let from = &self.data.bytes()[self.layout.first + first * step * size..];
         macro_rules! read {
-            ($number:ty) => {
-                for (out, bytes) in out.iter_mut().zip(from.chunks(step * size)) {
-                    let bytes = bytes[..size].try_into().unwrap_or_default();
-                    let number = if is_big_endian {
-                        <$number>::from_be_bytes(bytes)
-                    } else {
-                        <$number>::from_le_bytes(bytes)
-                    };
-                    *out = number as f64 * slope + intercept;
+            ($number:ty) => {{
+                let value = |number: $number| number as f64 * slope + intercept;
+                let all = from.as_chunks::<{ size_of::<$number>() }>().0;
+                if step > 1 || is_big_endian {
+                    for (out, &bytes) in out.iter_mut().zip(all.iter().step_by(step)) {
+                        let number = if is_big_endian {
+                            <$number>::from_be_bytes(bytes)
+                        } else {
+                            <$number>::from_le_bytes(bytes)
+                        };
+                        *out = value(number);
+                    }
+                } else {
+                    // The common case alone, in a loop for several numbers at once.
+                    for (out, &bytes) in out.iter_mut().zip(all) {
+                        *out = value(<$number>::from_le_bytes(bytes));
+                    }
                 }
-            };
+            }};
         }
         match voxel_type {
             VoxelType::U8 => read!(u8),
@@ -208,21 +243,36 @@ impl Voxels {
         }
     }
 
-    /// Calls `take` with the values of `count` voxels from `first` on.
-    fn each(&self, first: usize, count: usize, mut take: impl FnMut(usize, f64)) {
+    /// The bytes of one voxel.
+    pub(super) fn bytes_of(&self, index: usize) -> &[u8] {
+        let Layout { first, step, voxel_type, .. } = self.layout;
+        &self.data.bytes()[first + index * step * voxel_type.bytes()..][..voxel_type.bytes()]
+    }
+
+    /// The layout of voxels that follow one another, otherwise as here.
+    pub(super) fn packed(&self) -> Layout {
+        Layout { first: 0, step: 1, ..self.layout }
+    }
+
+    /// Calls `take` with the values of these voxels, up to [`AT_ONCE`] at a time, and the index of
+    /// the first of them.
+    fn each(&self, range: Range<usize>, mut take: impl FnMut(usize, &[f64])) {
         let mut values = [0.0; AT_ONCE];
-        for begin in (0..count).step_by(AT_ONCE) {
-            let values = &mut values[..AT_ONCE.min(count - begin)];
-            self.read(first + begin, values);
-            for (k, &value) in values.iter().enumerate() {
-                take(begin + k, value);
-            }
+        let end = range.end;
+        for begin in range.step_by(AT_ONCE) {
+            let values = &mut values[..AT_ONCE.min(end - begin)];
+            self.read(begin, values);
+            take(begin, values);
         }
     }
 
     /// Writes the values of the voxels from `first` on, relative to `zero`.
     pub(super) fn write(&self, first: usize, zero: f64, out: &mut [f32]) {
-        self.each(first, out.len(), |k, value| out[k] = (value - zero) as f32);
+        self.each(first..first + out.len(), |begin, values| {
+            for (out, value) in out[begin - first..].iter_mut().zip(values) {
+                *out = (value - zero) as f32;
+            }
+        });
     }
 
     /// The value of a voxel.
@@ -232,24 +282,33 @@ impl Voxels {
         found[0]
     }
 
-    /// Calls `take` with the values of all voxels.
-    pub(super) fn for_each(&self, mut take: impl FnMut(f64)) {
-        self.each(0, self.len, |_, value| take(value));
+    /// Calls `take` with the values of all voxels, some at a time, and the index of the first of
+    /// them, in slices of work.
+    pub(super) async fn for_each(&self, mut take: impl FnMut(usize, &[f64])) {
+        for range in slices::ranges(self.len, LIGHT) {
+            self.each(range, &mut take);
+            pause().await;
+        }
     }
 
     /// Smallest and largest value. If some values are not finite or too large for single precision,
     /// their number and the index of the first.
-    pub(super) fn range(&self) -> Result<[f64; 2], (usize, usize)> {
+    pub(super) async fn range(&self) -> Result<[f64; 2], (usize, usize)> {
         let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut count, mut first) = (0, 0);
-        self.each(0, self.len, |k, value| {
-            if value.abs() <= LARGEST {
-                (min, max) = (min.min(value), max.max(value));
-            } else {
-                first = if count == 0 { k } else { first };
-                count += 1;
+        self.for_each(|begin, values| {
+            for (k, &value) in values.iter().enumerate() {
+                if value.abs() <= LARGEST {
+                    // Unlike `f64::min`, a comparison is one instruction in WebAssembly.
+                    min = if value < min { value } else { min };
+                    max = if value > max { value } else { max };
+                } else {
+                    first = if count == 0 { begin + k } else { first };
+                    count += 1;
+                }
             }
-        });
+        })
+        .await;
         if count == 0 { Ok([min, max]) } else { Err((count, first)) }
     }
 }

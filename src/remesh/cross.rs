@@ -10,8 +10,8 @@ const AT_ONCE: usize = 32;
 
 impl MeshSolid {
     /// A point where a side of one face pierces another face; none if no two faces intersect. Faces
-    /// that share a corner are not compared.
-    pub(super) fn intersection(&self) -> Option<DVec3> {
+    /// that share a corner are not compared. Found in slices of work.
+    pub(super) async fn intersection(&self) -> Option<DVec3> {
         let (mesh, tree) = (&*self.mesh, &*self.tree);
         let of_face = |face: usize| {
             let own = mesh.faces()[face];
@@ -28,7 +28,7 @@ impl MeshSolid {
         };
         let count = mesh.faces().len();
         let all = slices::map(count, AT_ONCE, || (), |(), mut range| range.find_map(of_face));
-        slices::in_pool(|| slices::complete(all)).into_iter().flatten().next()
+        all.await.into_iter().flatten().next()
     }
 }
 

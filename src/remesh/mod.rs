@@ -28,6 +28,7 @@ pub use prepare::{MeshRepairs, MeshSolid};
 use crate::field::{Evaluator, Facts, Field, Frame, Jet, Piecewise};
 use crate::math::{grouped, significant};
 use crate::pointcloud::read::ReadError;
+use crate::slices;
 use core::ops::RangeInclusive;
 use glam::DVec3;
 use parts::PartsField;
@@ -213,15 +214,24 @@ impl MeshSolid {
     /// [`MeshError::Open`] if edges are to be kept but the mesh is not closed, and
     /// [`MeshError::Narrow`] if a whole scan is narrower than a cell.
     pub fn field(&self, edges: MeshEdges, smooth: Option<f64>) -> Result<MeshField, MeshError> {
+        slices::in_pool(|| slices::complete(self.clone().field_in_slices(edges, smooth)))
+    }
+
+    /// [`MeshSolid::field`] in slices of work.
+    pub(crate) async fn field_in_slices(
+        self,
+        edges: MeshEdges,
+        smooth: Option<f64>,
+    ) -> Result<MeshField, MeshError> {
         if let Some(width) = smooth.filter(|width| !(0.0..=10.0).contains(width)) {
             return Err(MeshError::Width { width });
         }
         let usual = DEFAULT_EDGE_ANGLE.to_radians();
         let may_keep = edges != MeshEdges::Rounded && smooth.is_none() && self.is_closed();
-        let intersection = if may_keep { self.intersection() } else { None };
+        let intersection = if may_keep { self.intersection().await } else { None };
         let patches = match edges {
             MeshEdges::Auto if may_keep && intersection.is_none() => {
-                Some(Patches::new(self, usual)).filter(Patches::are_of_part)
+                Some(Patches::new(&self, usual)).filter(Patches::are_of_part)
             }
             MeshEdges::Auto | MeshEdges::Rounded => None,
             MeshEdges::Angle(angle) => {
@@ -237,10 +247,10 @@ impl MeshSolid {
                 if let Some(place) = intersection {
                     return Err(MeshError::Intersects { place: self.origin + place });
                 }
-                Some(Patches::new(self, angle.to_radians()))
+                Some(Patches::new(&self, angle.to_radians()))
             }
         };
-        let (kind, function) = match patches.map(|patches| patches.with_corners(self)) {
+        let (kind, function) = match patches.map(|patches| patches.with_corners(&self)) {
             Some(patches) => {
                 let kind = MeshKind::Parts {
                     patches: patches.count,
@@ -248,15 +258,15 @@ impl MeshSolid {
                     corners: patches.corners.len(),
                     faded: patches.faded,
                 };
-                (kind, Function::Parts(PartsField::new(self, patches)))
+                (kind, Function::Parts(PartsField::new(&self, patches)))
             }
             None => {
                 let (field, Chosen { size, cell, width }) =
-                    ScanField::new(self, patches::sharp_count(self), smooth)?;
+                    ScanField::made(&self, patches::sharp_count(&self), smooth).await?;
                 (MeshKind::Scan { size, cell, smooth: width }, Function::Scan(Arc::new(field)))
             }
         };
-        Ok(MeshField { solid: self.clone(), kind, function })
+        Ok(MeshField { solid: self, kind, function })
     }
 }
 

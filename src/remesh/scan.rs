@@ -95,8 +95,8 @@ impl Grid {
 
 impl ScanField {
     /// The field, with a Gaussian of `width` cells; without it the noise of the vertices and the
-    /// number of `sharp` edges decide.
-    pub(super) fn new(
+    /// number of `sharp` edges decide. Made in slices of work.
+    pub(super) async fn made(
         solid: &MeshSolid,
         sharp: usize,
         width: Option<f64>,
@@ -111,17 +111,17 @@ impl ScanField {
             let is_smooth = (sharp as f64) < SHARP_SHARE * solid.edges.len() as f64;
             (1.5 * wanted).clamp(if is_smooth { WIDTHS[0] } else { WIDTHS[1] }, WIDTHS[2])
         });
-        let mut values = slices::in_pool(|| slices::complete(distances(solid, &grid)));
+        let mut values = distances(solid, &grid).await;
         if width > 0.0 {
-            smooth(&grid, &mut values, width);
+            smooth(&grid, &mut values, width).await;
         }
         let narrow = |_: ImageError| MeshError::Narrow { cell: grid.cell };
-        let image = Image::new(grid.size, values).map_err(narrow)?;
+        let image = Image::filtered(grid.size, values).await.map_err(narrow)?;
         let image = image.with_spacing([grid.cell; 3]).map_err(narrow)?;
         let image = image.with_origin(solid.origin + grid.origin).map_err(narrow)?;
         let domain = Bounds::new(grid.origin, grid.place(grid.size.map(|n| n - 1)));
         let domain = domain.relative_to(-solid.origin);
-        let field = Self { image: image.at(0.0).map_err(narrow)?, domain };
+        let field = Self { image: ImageField::made(&image, 0.0, false).await.map_err(narrow)?, domain };
         Ok((field, Chosen { size: grid.size, cell: grid.cell, width }))
     }
 
@@ -320,10 +320,10 @@ async fn distances(solid: &MeshSolid, grid: &Grid) -> Vec<f32> {
 
 /// Blurs values by twice a Gaussian minus that Gaussian applied twice. A single Gaussian moves a
 /// surface in proportion to its curvature; this one only where the curvature changes.
-fn smooth(grid: &Grid, values: &mut [f32], width: f64) {
-    blur(grid.size, values, [width; 3]);
+async fn smooth(grid: &Grid, values: &mut [f32], width: f64) {
+    blur(grid.size, values, [width; 3]).await;
     let mut twice = values.to_vec();
-    blur(grid.size, &mut twice, [width; 3]);
+    blur(grid.size, &mut twice, [width; 3]).await;
     values.iter_mut().zip(twice).for_each(|(once, twice)| *once = 2.0 * *once - twice);
 }
 

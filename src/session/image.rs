@@ -24,6 +24,8 @@ pub struct ImageInfo {
     pub noise: f64,
     /// Whether darker voxels are inside.
     pub is_dark_inside: bool,
+    /// Whether a surface that the border of the image cuts is closed there.
+    pub is_closed: bool,
     /// Decisions that were made, in sentences.
     pub notes: Vec<String>,
 }
@@ -61,7 +63,7 @@ pub struct LabelFacts {
     pub voxels: u64,
 }
 
-/// What the header of a file announces.
+/// The size and type of an image, and the memory that it needs, from the header of its file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct ImagePromise {
@@ -71,6 +73,8 @@ pub struct ImagePromise {
     pub voxel_type: String,
     /// Bytes of memory for reading and filtering; 0 if that takes the whole file.
     pub memory: u64,
+    /// Bytes of the voxels alone; 0 if that takes the whole file.
+    pub bytes: u64,
 }
 
 #[cfg(feature = "images")]
@@ -78,11 +82,12 @@ pub(super) use with_images::{choice, parameters};
 
 #[cfg(feature = "images")]
 mod with_images {
-    use super::super::{FieldAnswer, FieldRequest, Session, opened::Surface};
+    use super::super::opened::{Surface, Wanted};
+    use super::super::{FieldAnswer, FieldRequest, Session};
     use super::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
     use crate::field::formula::Parameter;
-    use crate::image::{Image, ImageChoice, ImageOutline, ImageSurface};
-    use crate::session::{Fault, FaultKind};
+    use crate::image::{Image, ImageChoice, ImageOutline, ImageSurface, Section};
+    use crate::session::Fault;
     use std::collections::BTreeMap;
 
     /// Minimum number of steps of the iso value's slider over the range of the voxels.
@@ -93,18 +98,19 @@ mod with_images {
     const MOST_LABELS: usize = 256;
 
     /// The names of the choices among the parameters of a request.
-    const NAMES: [&str; 4] = ["iso", "label", "smooth", "dark"];
+    const NAMES: [&str; 5] = ["iso", "label", "smooth", "dark", "closed"];
 
     /// The choice made by named values.
     fn choice_of(values: &BTreeMap<String, f64>) -> ImageChoice {
-        let [iso, label, smooth, dark] = NAMES.map(|name| values.get(name).copied());
-        ImageChoice { iso, label, smooth, is_dark_inside: dark.is_some_and(|dark| dark != 0.0) }
+        let [iso, label, smooth, dark, closed] = NAMES.map(|name| values.get(name).copied());
+        let is_chosen = |value: Option<f64>| value.is_some_and(|value| value != 0.0);
+        ImageChoice { iso, label, smooth, is_dark_inside: is_chosen(dark), is_closed: is_chosen(closed) }
     }
 
     /// The named values that make the choice of a surface.
     pub(in super::super) fn choice(surface: &ImageSurface) -> impl Iterator<Item = (&'static str, f64)> {
-        let ImageChoice { iso, label, smooth, is_dark_inside } = *surface.choice();
-        let values = [iso, label, smooth, is_dark_inside.then_some(1.0)];
+        let ImageChoice { iso, label, smooth, is_dark_inside, is_closed } = *surface.choice();
+        let values = [iso, label, smooth, is_dark_inside.then_some(1.0), is_closed.then_some(1.0)];
         NAMES.into_iter().zip(values).filter_map(|(name, value)| Some((name, value?)))
     }
 
@@ -119,8 +125,9 @@ mod with_images {
                 iso: surface.field().iso(),
                 smooth: surface.smooth(),
                 is_smooth_chosen: choice.smooth.is_none(),
-                noise: image.noise(),
+                noise: surface.noise(),
                 is_dark_inside: choice.is_dark_inside,
+                is_closed: choice.is_closed,
                 notes: surface.notes().to_vec(),
             }
         }
@@ -163,20 +170,19 @@ mod with_images {
     }
 
     impl ImageFacts {
-        /// The facts of an image.
-        #[must_use]
-        pub fn of(image: &Image) -> Self {
-            let labels = image.labels();
-            let are_few = (2..=MOST_LABELS).contains(&labels.len());
+        /// The facts of an image, found in slices of work.
+        pub async fn of(image: &Image) -> Self {
+            let labels = image.up_to(MOST_LABELS).await;
             let of = |label: &crate::image::Label| LabelFacts { value: label.value, voxels: label.voxels };
+            let histogram = image.counted().await;
             Self {
                 size: image.size(),
                 spacing: image.placement().spacing(),
                 voxel_type: image.voxel_type().to_string(),
                 range: image.range(),
-                histogram: image.histogram(),
-                otsu: image.otsu(),
-                labels: if are_few { labels.iter().map(of).collect() } else { Vec::new() },
+                histogram: histogram.counts().to_vec(),
+                otsu: histogram.otsu(),
+                labels: labels.iter().map(of).collect(),
                 notes: image.notes().to_vec(),
             }
         }
@@ -190,13 +196,14 @@ mod with_images {
                 size: outline.map(|outline| outline.size),
                 voxel_type: outline.map(|outline| outline.voxel_type.to_string()).unwrap_or_default(),
                 memory: outline.map_or(0, ImageOutline::memory),
+                bytes: outline.map_or(0, ImageOutline::bytes),
             }
         }
     }
 
     impl Session {
         /// Changes the field to the surface of an image. In the request, the parameters `iso`,
-        /// `label`, `smooth` and, if not 0, `dark` are an [`ImageChoice`]. Its formula has the
+        /// `label`, `smooth` and, if not 0, `dark` and `closed` are an [`ImageChoice`]. Its formula has the
         /// surface as an operand, see [`Formula::with_model`]. The box is given by the request, or
         /// is fitted. [`Session::set_field`] without a surface and a formula changes the choice.
         ///
@@ -212,15 +219,27 @@ mod with_images {
             name: &str,
             request: &FieldRequest,
         ) -> Result<FieldAnswer, Fault> {
-            let choice = choice_of(&request.parameters);
-            self.set_opened(name, request, |before| {
-                let before = match before {
-                    Some(Surface::Image(before)) => Some(before),
-                    _ => None,
-                };
-                let surface = image.surface(&choice, before);
-                Ok(Surface::Image(surface.map_err(|error| Fault::new(FaultKind::Image, &error))?))
-            })
+            self.set_opened(name, request, Wanted::Image(image.clone(), choice_of(&request.parameters)))
+        }
+
+        /// The voxels of the present image in a plane: see [`Image::section`]. Labels are those of
+        /// the nearest voxels, grey values are interpolated. None if the field is of no image.
+        #[must_use]
+        pub fn section(&self, section: &Section) -> Option<Vec<f32>> {
+            match self.opened_surface()? {
+                Surface::Image(surface) => {
+                    Some(surface.image().section(section, surface.choice().label.is_none()))
+                }
+                #[cfg(feature = "points")]
+                Surface::Mesh(_) => None,
+            }
+        }
+
+        /// Does up to `budget` slices of the work of [`Session::set_image`] with these arguments,
+        /// which then takes what is made. Returns the share that is done, 1 at the end. A call for
+        /// another image or choice begins again.
+        pub fn make_image(&mut self, image: &Image, request: &FieldRequest, budget: u32) -> f64 {
+            self.make(Wanted::Image(image.clone(), choice_of(&request.parameters)), budget)
         }
     }
 }
@@ -276,6 +295,29 @@ mod tests {
         let answer = moved.set_field(&request(&[("dark", 1.0)])).expect("a field");
         assert_eq!(iso(&answer), 100.0);
         assert!(answer.image.is_some_and(|image| image.is_dark_inside));
+    }
+
+    #[test]
+    fn a_field_made_in_slices_is_the_one_made_at_once() {
+        let (mut sliced, mut whole) = (Session::new(), Session::new());
+        let image = ball();
+        let wanted = request(&[("iso", 150.0), ("smooth", 0.8)]);
+        // Another choice begins again, and one that is made is not made again.
+        assert!(sliced.make_image(&image, &request(&[("iso", 300.0)]), 3) < 1.0);
+        let mut shares = Vec::new();
+        while shares.last() != Some(&1.0) {
+            shares.push(sliced.make_image(&image, &wanted, 1));
+        }
+        assert!(shares.len() > 20 && shares.is_sorted(), "{shares:?}");
+        assert_eq!(sliced.make_image(&image, &wanted, 1), 1.0);
+        sliced.set_image(&image, "ball", &wanted).expect("a field");
+        whole.set_image(&image, "ball", &wanted).expect("a field");
+        assert_eq!(digest(&mut sliced), digest(&mut whole));
+        // What has no surface is told when the field is set.
+        assert_eq!(sliced.make_image(&image, &request(&[("iso", 1e6)]), u32::MAX), 1.0);
+        let fault = sliced.set_image(&image, "ball", &request(&[("iso", 1e6)])).expect_err("refused");
+        assert_eq!(fault.kind, FaultKind::Image);
+        assert_eq!(iso(&sliced.answer()), 150.0);
     }
 
     #[test]

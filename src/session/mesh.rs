@@ -62,7 +62,7 @@ pub(super) use with_meshes::{Comparison, MeshSurface};
 
 #[cfg(all(feature = "images", feature = "points"))]
 mod with_meshes {
-    use super::super::opened::Surface;
+    use super::super::opened::{Surface, Wanted};
     use super::super::{FieldAnswer, FieldRequest, Session, Source};
     use super::{MeshInfo, MeshPart, MeshScan};
     use crate::export::{MeshBuffers, Vertices};
@@ -141,6 +141,23 @@ mod with_meshes {
     }
 
     impl MeshSurface {
+        /// The surface of a choice, unless it is the one `before`, made in slices of work.
+        pub(in super::super) async fn made(
+            mesh: OpenedMesh,
+            (edges, smooth): (MeshEdges, Option<f64>),
+            before: Option<Self>,
+        ) -> Result<Self, Fault> {
+            let is_same = |before: &Self| {
+                before.mesh.is_same(&mesh) && (before.edges, before.smooth) == (edges, smooth)
+            };
+            if let Some(before) = before.filter(is_same) {
+                return Ok(before);
+            }
+            let field =
+                mesh.solid.clone().field_in_slices(edges, smooth).await.map_err(|error| fault_of(&error))?;
+            Ok(Self { mesh, field, edges, smooth })
+        }
+
         /// The named values that make the choice.
         pub(in super::super) fn choice(&self) -> impl Iterator<Item = (&'static str, f64)> {
             let angle = match self.edges {
@@ -229,17 +246,13 @@ mod with_meshes {
             request: &FieldRequest,
         ) -> Result<FieldAnswer, Fault> {
             let (edges, smooth) = choice_of(&request.parameters);
-            self.set_opened(name, request, |before| match before {
-                Some(Surface::Mesh(before))
-                    if before.mesh.is_same(mesh) && (before.edges, before.smooth) == (edges, smooth) =>
-                {
-                    Ok(Surface::Mesh(before.clone()))
-                }
-                _ => {
-                    let field = mesh.solid.field(edges, smooth).map_err(|error| fault_of(&error))?;
-                    Ok(Surface::Mesh(MeshSurface { mesh: mesh.clone(), field, edges, smooth }))
-                }
-            })
+            self.set_opened(name, request, Wanted::Mesh(mesh.clone(), edges, smooth))
+        }
+
+        /// [`Session::make_image`] for a mesh.
+        pub fn make_mesh(&mut self, mesh: &OpenedMesh, request: &FieldRequest, budget: u32) -> f64 {
+            let (edges, smooth) = choice_of(&request.parameters);
+            self.make(Wanted::Mesh(mesh.clone(), edges, smooth), budget)
         }
 
         /// Compares the mesh that [`Session::join`] has made with the opened one, with up to

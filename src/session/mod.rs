@@ -190,6 +190,9 @@ pub struct Session {
     /// The settings of the last start, and its spacing by a formula.
     started: Option<Settings>,
     spaced: Option<SpacingText>,
+    /// The surface of a file that is made for the next change of the field.
+    #[cfg(feature = "images")]
+    making: Option<Box<opened::Making>>,
     /// The comparison of the joined mesh with the opened one.
     #[cfg(all(feature = "images", feature = "points"))]
     comparison: mesh::Comparison,
@@ -220,6 +223,8 @@ impl Session {
             is_box_found: false,
             started: None,
             spaced: None,
+            #[cfg(feature = "images")]
+            making: None,
             #[cfg(all(feature = "images", feature = "points"))]
             comparison: mesh::Comparison::None,
         }

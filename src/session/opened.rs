@@ -2,12 +2,15 @@
 
 use super::{FieldAnswer, FieldRequest, ImageInfo, ModelFormula, Session, Source, check_box, image};
 #[cfg(feature = "points")]
-use super::{MeshInfo, mesh::MeshSurface};
+use super::{MeshInfo, OpenedMesh, mesh::MeshSurface};
 use crate::extent::FALLBACK;
 use crate::field::Field;
 use crate::field::formula::Parameter;
-use crate::image::ImageSurface;
-use crate::session::Fault;
+use crate::image::{Image, ImageChoice, ImageSurface};
+#[cfg(feature = "points")]
+use crate::remesh::MeshEdges;
+use crate::session::{Fault, FaultKind};
+use crate::slices::{self, Estimated};
 use std::sync::Arc;
 
 /// The surface of a file, with the choices for it.
@@ -135,22 +138,112 @@ impl OpenedSource {
     }
 }
 
+/// A file and the choices for its surface.
+pub(super) enum Wanted {
+    /// For the surface of an image.
+    Image(Image, ImageChoice),
+    /// For the surface of a triangle mesh.
+    #[cfg(feature = "points")]
+    Mesh(OpenedMesh, MeshEdges, Option<f64>),
+}
+
+impl Wanted {
+    fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Image(image, choice), Self::Image(other, its)) => image.is_same(other) && choice == its,
+            #[cfg(feature = "points")]
+            (Self::Mesh(mesh, edges, smooth), Self::Mesh(other, its_edges, its_smooth)) => {
+                mesh.is_same(other) && (edges, smooth) == (its_edges, its_smooth)
+            }
+            #[cfg(feature = "points")]
+            _ => false,
+        }
+    }
+
+    /// Makes the surface, given the one before it.
+    fn work(&self, before: Option<Surface>) -> Estimated<'static, Result<Surface, Fault>> {
+        match self {
+            Self::Image(image, choice) => {
+                let before = match before {
+                    Some(Surface::Image(before)) => Some(before),
+                    #[cfg(feature = "points")]
+                    _ => None,
+                    #[cfg(not(feature = "points"))]
+                    None => None,
+                };
+                let expected = image.slices_of(choice);
+                let work = image.clone().surface_in_slices(*choice, before);
+                let work = async {
+                    work.await.map(Surface::Image).map_err(|error| Fault::new(FaultKind::Image, &error))
+                };
+                Estimated::new(Box::pin(work), expected)
+            }
+            #[cfg(feature = "points")]
+            Self::Mesh(mesh, edges, smooth) => {
+                let before = match before {
+                    Some(Surface::Mesh(before)) => Some(before),
+                    _ => None,
+                };
+                let work = MeshSurface::made(mesh.clone(), (*edges, *smooth), before);
+                Estimated::new(Box::pin(async { work.await.map(Surface::Mesh) }), 1)
+            }
+        }
+    }
+}
+
+/// The surface that is made for the next change of the field.
+pub(super) struct Making {
+    wanted: Wanted,
+    work: Estimated<'static, Result<Surface, Fault>>,
+    made: Option<Result<Surface, Fault>>,
+}
+
 impl Session {
-    /// Changes the field to the surface that `chosen` makes, given the previous one, with the
-    /// formula and the box of a request.
+    /// The surface of the present field, if it is one of a file.
+    pub(super) fn opened_surface(&self) -> Option<&Surface> {
+        match self.run.field() {
+            Source::Opened(present) => Some(&present.surface),
+            _ => None,
+        }
+    }
+
+    /// What is made of a file, begun if it is not under way.
+    fn making(&mut self, wanted: Wanted) -> Making {
+        match self.making.take().filter(|making| making.wanted.is_same(&wanted)) {
+            Some(making) => *making,
+            None => {
+                let work = wanted.work(self.opened_surface().cloned());
+                Making { wanted, work, made: None }
+            }
+        }
+    }
+
+    /// Does up to `budget` slices of the work to make a surface; returns the share that is done.
+    pub(super) fn make(&mut self, wanted: Wanted, budget: u32) -> f64 {
+        let mut making = self.making(wanted);
+        if making.made.is_none() {
+            making.made = making.work.advance(budget);
+        }
+        let share = if making.made.is_some() { 1.0 } else { making.work.fraction().min(0.999) };
+        self.making = Some(Box::new(making));
+        share
+    }
+
+    /// Changes the field to a surface of a file, with the formula and the box of a request.
     pub(super) fn set_opened(
         &mut self,
         name: &str,
         request: &FieldRequest,
-        chosen: impl FnOnce(Option<&Surface>) -> Result<Surface, Fault>,
+        wanted: Wanted,
     ) -> Result<FieldAnswer, Fault> {
         let own = request.bounds.unwrap_or(FALLBACK);
         check_box(&own)?;
+        let Making { work, made, .. } = self.making(wanted);
+        let surface = made.unwrap_or_else(|| slices::in_pool(|| work.complete()))?;
         let before = match self.run.field() {
             Source::Opened(before) => Some(&**before),
             _ => None,
         };
-        let surface = chosen(before.map(|before| &before.surface))?;
         let within = match &request.formula {
             Some(text) => Some(Self::model_formula(text, &surface.shared(), request)?),
             None => None,

@@ -107,6 +107,7 @@ const CHOICES = {
   iso: ['image'],
   label: ['image'],
   darkInside: ['image'],
+  closeBorder: ['image'],
   edges: ['mesh'],
   smooth: ['image', 'mesh'],
 };
@@ -122,8 +123,8 @@ function angleOf(edges) {
  * @param {Options} options @param {'image' | 'mesh' | null} kind
  * @returns {SentField['parameters']}
  */
-export function valuesOf({ iso, label, smooth, darkInside, edges }, kind) {
-  for (const [name, value] of Object.entries({ iso, label, smooth, darkInside, edges })) {
+export function valuesOf({ iso, label, smooth, darkInside, closeBorder, edges }, kind) {
+  for (const [name, value] of Object.entries({ iso, label, smooth, darkInside, closeBorder, edges })) {
     if (value !== undefined && !(kind && CHOICES[name].includes(kind)))
       throw new InputError(
         `${name}: for ${CHOICES[name].map((of) => (of === 'image' ? 'an image' : 'a mesh')).join(' or ')}.`,
@@ -138,6 +139,7 @@ export function valuesOf({ iso, label, smooth, darkInside, edges }, kind) {
   if (smooth !== undefined)
     values.smooth = number('smooth', smooth, (v) => v >= 0 && v <= widest, `from 0 to ${widest} ${unit}`);
   if (darkInside !== undefined && flag('darkInside', darkInside)) values.dark = 1;
+  if (closeBorder !== undefined && flag('closeBorder', closeBorder)) values.closed = 1;
   if (edges !== undefined && edges !== 'auto') values.edges = angleOf(edges);
   return values;
 }

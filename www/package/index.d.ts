@@ -57,6 +57,8 @@ export interface Options {
   smooth?: number;
   /** of an image: whether the darker voxels are inside */
   darkInside?: boolean;
+  /** of an image: whether a surface that its border cuts is closed there; otherwise it ends with a rim */
+  closeBorder?: boolean;
   /**
    * of a mesh: the angle in degrees above which an edge stays sharp; `auto`, the default, is 30° if such edges form
    * curves on a closed mesh; `none` rounds all edges

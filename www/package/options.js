@@ -123,6 +123,7 @@ const KNOWN = [
   'label',
   'smooth',
   'darkInside',
+  'closeBorder',
   'edges',
   'measure',
   'signal',

@@ -24,7 +24,7 @@ import { Program } from './program.js';
 const FIRST_BUDGET = 64;
 const PROGRESS_MS = 50;
 /** The choices for an image and for a mesh, by their names in the core. */
-const OF_IMAGES = ['iso', 'label', 'smooth', 'dark'];
+const OF_IMAGES = ['iso', 'label', 'smooth', 'dark', 'closed'];
 const OF_MESHES = ['edges', 'smooth'];
 /** Largest memory of a run and its report: half of what browsers allow a module. */
 const MEMORY_MB = 2048;
@@ -207,24 +207,28 @@ export function serve({ post, load }) {
    * @param {NonNullable<SentField['given']>} given @param {Omit<SentField, 'given'>} request
    * @param {{id: number, core: Core}} of
    */
-  async function takenGiven(given, request, { id, core }) {
+  async function takenGiven(given, request, of) {
+    const { id, core } = of;
     if ('faces' in given) {
       const fault = core.open_faces(given.name, given.points, given.faces);
       if (fault) throw refusalOf(fault);
     } else if ('voxels' in given) {
       const { name, type, size, rows, voxels } = given;
-      const opened = core.open_voxels(name, type, new Uint32Array(size), new Float64Array(rows), voxels);
-      if (!opened.ok) throw refusalOf(opened.error);
+      const fault = core.open_voxels(name, type, new Uint32Array(size), new Float64Array(rows), voxels);
+      if (fault) throw refusalOf(fault);
     } else {
       const fraction = (/** @type {number} */ share) => ({ phase: 'reading', particles: 0, fraction: 0.1 * share });
       const opened = await openGiven(core, given, {
         tell: (_, share) => post({ id, progress: fraction(share) }),
         isOver: () => asked.get(id) === true,
         mostBytes: MEMORY_MB * 1e6,
+        nowMs: () => performance.now(),
+        pause,
       });
       if (opened && !opened.ok) throw new Refusal('InputError', opened.message);
     }
     if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
+    await inSlices(of, (budget) => (core.make_opened(request, budget) === 1 ? true : undefined));
     const answer = core.set_opened(request);
     // The field has its own copy, which shares the voxels and faces.
     core.close_opened();

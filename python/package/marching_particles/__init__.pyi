@@ -57,6 +57,7 @@ class Image(Field):
         label: Union[int, None] = None,
         smooth: Union[float, None] = None,
         inside: Literal["bright", "dark"] = "bright",
+        border: Literal["open", "closed"] = "open",
     ) -> None: ...
     @property
     def bounds(self) -> tuple[_Corner, _Corner]: ...

@@ -43,6 +43,8 @@ class Image(Field):
             noise that is measured and the rounding of whole numbers; over the distances from a
             label by default 1.
         inside: ``"bright"`` or ``"dark"``: which voxels are inside.
+        border: ``"open"`` or ``"closed"``: whether a surface that the border of the image cuts ends
+            there with a rim, or is closed half a voxel beyond the outermost centres.
 
     Attributes:
         bounds: The box of the surface, ``((x0, y0, z0), (x1, y1, z1))``.
@@ -70,9 +72,12 @@ class Image(Field):
         label=None,
         smooth=None,
         inside="bright",
+        border="open",
     ):
         if inside not in ("bright", "dark"):
             raise ValueError(f'inside is "bright" or "dark", and not {inside!r}')
+        if border not in ("open", "closed"):
+            raise ValueError(f'border is "open" or "closed", and not {border!r}')
         if iso is not None and label is not None:
             raise TypeError("give an iso value or a label, and not both")
         choice = (
@@ -80,6 +85,7 @@ class Image(Field):
             None if label is None else float(label),
             None if smooth is None else float(smooth),
             inside == "dark",
+            border == "closed",
         )
         if isinstance(array, (str, os.PathLike)):
             if any(value is not None for value in (spacing, origin, affine)):
@@ -102,7 +108,8 @@ class Image(Field):
             )
             what = f"{' × '.join(map(str, voxels.shape))} voxels"
         how = {"spacing": spacing, "origin": origin, "affine": affine, "iso": iso, "label": label}
-        super().__init__(field, partial(Image, array, **how, smooth=smooth, inside=inside))
+        how.update(smooth=smooth, inside=inside, border=border)
+        super().__init__(field, partial(Image, array, **how))
         known = json.loads(known)
         self.iso = known["iso"]
         self.smooth = known["smooth"]

@@ -4,11 +4,12 @@ use super::header::{first_of, lines, numbers, quoted, wrong};
 use super::zip::Unpacked;
 use super::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
 use crate::image::{Image, Placement};
+use crate::slices::{MEDIUM, pause};
 use glam::{DMat3, DVec3};
 
 const FORMAT: ImageFormat = ImageFormat::Cube;
-/// Most bytes of a header, and of a value in the text: a number in double precision has up to 24
-/// characters, and some programs add spaces.
+/// Upper limits on the size of a header and of a value in the text, in bytes: a number in double
+/// precision has up to 24 characters, and some programs add spaces.
 const HEADER: u64 = 1 << 20;
 const VALUE: u64 = 32;
 
@@ -58,9 +59,9 @@ fn head(start: &[u8]) -> Result<Head, ImageReadError> {
     })
 }
 
-/// Reads a cube file, whose last axis changes fastest.
-pub(super) fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
-    let start = file.start(super::header::LONGEST)?;
+/// Reads a cube file, whose last axis changes fastest, in slices of work.
+pub(super) async fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
+    let start = file.start(super::header::LONGEST).await?;
     let Head { atoms, origin, size, axes, mut values } = head(&start)?;
     let count = size.iter().try_fold(1_u64, |product, &n| product.checked_mul(n as u64));
     let bytes = |values: usize| count.and_then(|count| count.checked_mul(4)?.checked_mul(values as u64));
@@ -69,7 +70,8 @@ pub(super) fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
         return Err(ImageReadError::TooLarge { bytes: bytes(values).unwrap_or(u64::MAX) });
     }
     let count = count.unwrap_or(0);
-    let text = file.all(HEADER.saturating_add(count.saturating_mul(VALUE * values.max(64) as u64)))?;
+    let limit = HEADER.saturating_add(count.saturating_mul(VALUE * values.max(64) as u64));
+    let text = file.all(limit).await?;
     // The header has two comments, four rows and the atoms; a negative number of atoms means that a
     // list of orbitals follows.
     let mut at = lines(&text)
@@ -107,9 +109,12 @@ pub(super) fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
         for _ in 1..values {
             words.next();
         }
+        if index % MEDIUM as u64 == 0 {
+            pause().await;
+        }
     }
     let [x, y, z] = size;
-    let image = Image::new([z, y, x], &voxels)?;
+    let image = Image::filtered([z, y, x], voxels).await?;
     let placement = Placement::new(DMat3::from_cols(axes[2], axes[1], axes[0]), origin)?;
     Ok(Image { placement, notes: notes.into(), ..image })
 }

@@ -3,7 +3,7 @@
 use super::{ImageFormat, ImageReadError};
 use crate::image::voxels::VoxelType;
 
-/// Most bytes of a header.
+/// Upper limit on the size of a header, in bytes.
 pub(super) const LONGEST: usize = 1 << 18;
 
 /// An error in an entry of a header.

@@ -16,12 +16,13 @@ mod zip;
 
 use super::voxels::{Layout, VoxelType, Voxels};
 use super::{Image, ImageError, Placement};
+use crate::slices;
 use core::fmt::{self, Display, Formatter};
 use glam::{DMat3, DVec3};
 use header::{quoted, wrong};
 use zip::Unpacked;
 
-/// Most bytes of the voxels of a file: 1024³ voxels of 16 bits.
+/// Upper limit on the size of the voxels of a file, in bytes: 1024³ voxels of 16 bits.
 pub const MAX_IMAGE_BYTES: u64 = 1 << 31;
 
 /// File formats that can be read.
@@ -180,21 +181,30 @@ impl Image {
         bytes: Vec<u8>,
         beside: impl Fn(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, ImageReadError> {
-        read(name, bytes, &beside)
+        slices::complete(Self::read_in_slices(name.to_owned(), bytes, beside))
     }
-}
 
-fn read(name: &str, bytes: Vec<u8>, beside: Beside) -> Result<Image, ImageReadError> {
-    if bytes.is_empty() {
-        return Err(ImageReadError::Empty);
-    }
-    // Of a compressed file, first only the header is unpacked; it says how much follows.
-    let mut file = Unpacked::new(bytes);
-    let start = file.start(header::LONGEST)?;
-    match sniff(&start)? {
-        ImageFormat::Cube => cube::read(file),
-        ImageFormat::Tiff => tiff::read(file),
-        format => image(header(format, name, &start)?, file, beside),
+    /// [`Image::read`] in slices of work.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Image::read`].
+    pub async fn read_in_slices(
+        name: String,
+        bytes: Vec<u8>,
+        beside: impl Fn(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, ImageReadError> {
+        if bytes.is_empty() {
+            return Err(ImageReadError::Empty);
+        }
+        // Of a compressed file, first only the header is unpacked; it says how much follows.
+        let mut file = Unpacked::new(bytes);
+        let start = file.start(header::LONGEST).await?;
+        match sniff(&start)? {
+            ImageFormat::Cube => cube::read(file).await,
+            ImageFormat::Tiff => tiff::read(file).await,
+            format => image(header(format, &name, &start)?, file, &beside).await,
+        }
     }
 }
 
@@ -244,7 +254,7 @@ impl Image {
             source: Source::Here(first),
             notes: Vec::new(),
         };
-        image(header, Unpacked::new(bytes), &|_| Err(String::new()))
+        slices::complete(image(header, Unpacked::new(bytes), &|_| Err(String::new())))
     }
 }
 
@@ -265,6 +275,21 @@ impl ImageOutline {
         let voxel = self.voxel_type.bytes() as u64 + 2 * VoxelType::F32.bytes() as u64;
         self.size.iter().fold(voxel, |product, &n| product.saturating_mul(n as u64))
     }
+
+    /// Bytes of the voxels alone.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let voxel = self.voxel_type.bytes() as u64;
+        self.size.iter().fold(voxel, |product, &n| product.saturating_mul(n as u64))
+    }
+
+    /// Estimated number of slices of work to read the file and to find its facts.
+    #[must_use]
+    pub fn slices(&self) -> u64 {
+        let count = self.size.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
+        // Three passes over the voxels: for their range, the labels and the histogram.
+        self.bytes() / zip::UNPACKED_AT_ONCE + count.saturating_mul(3) / slices::LIGHT as u64
+    }
 }
 
 impl Image {
@@ -279,7 +304,7 @@ impl Image {
         if start.is_empty() {
             return Err(ImageReadError::Empty);
         }
-        let start = Unpacked::new(start.to_vec()).start(header::LONGEST)?;
+        let start = slices::complete(Unpacked::new(start.to_vec()).start(header::LONGEST))?;
         let format = sniff(&start)?;
         if matches!(format, ImageFormat::Cube | ImageFormat::Tiff) {
             return Ok(None);
@@ -290,7 +315,7 @@ impl Image {
 }
 
 /// Reads the voxels that a header describes.
-fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageReadError> {
+async fn image(header: Header, file: Unpacked, beside: Beside<'_>) -> Result<Image, ImageReadError> {
     let Header { format, size, axes, origin, mut layout, is_packed, source, notes } = header;
     let voxel = (layout.voxel_type.bytes() as u64).saturating_mul(layout.step as u64);
     let needed = size.iter().fold(voxel, |product, &n| product.saturating_mul(n as u64));
@@ -316,17 +341,17 @@ fn image(header: Header, file: Unpacked, beside: Beside) -> Result<Image, ImageR
         }
     };
     if is_packed {
-        let mut inner = file.all(MAX_IMAGE_BYTES)?;
+        let mut inner = file.all(MAX_IMAGE_BYTES).await?;
         inner.drain(..first.min(inner.len()));
         (file, first) = (Unpacked::packed(inner), 0);
     }
-    let data = file.all(needed.saturating_add(first as u64))?;
+    let data = file.all(needed.saturating_add(first as u64)).await?;
     layout.first = first;
     let found = (data.len() as u64).saturating_sub(layout.first as u64);
     let len = (needed / voxel) as usize;
     let cut_off = ImageReadError::CutOff { format, needed, found };
     let voxels = Voxels::of_file(data, layout, len).ok_or(cut_off)?;
-    let image = Image::of(size, voxels)?;
+    let image = Image::of(size, voxels).await?;
     let placement = Placement::new(DMat3::from_cols(axes[0], axes[1], axes[2]), origin)?;
     Ok(Image { placement, notes: notes.into(), ..image })
 }

@@ -6,12 +6,13 @@ use super::zip::Unpacked;
 use super::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
 use crate::image::voxels::{Layout, VoxelType, Voxels};
 use crate::image::{Image, Placement};
+use crate::slices;
 use glam::{DMat3, DVec3};
 
 const FORMAT: ImageFormat = ImageFormat::Tiff;
-/// Most pages of a file: their chain may be circular.
+/// Upper limit on the number of pages, since their chain may be circular.
 const MOST_PAGES: usize = 1 << 16;
-/// Most values of an entry: a strip for each row of a page.
+/// Upper limit on the number of values of an entry: a page may have a strip for each row.
 const MOST_VALUES: usize = 1 << 20;
 
 /// Tags of the entries that are used.
@@ -263,7 +264,7 @@ fn append(page: &Page, form: &Form, out: &mut Vec<u8>) -> Result<(), ImageReadEr
         match form.packing {
             Packing::Plain => out.extend_from_slice(&strip[..wanted.min(strip.len())]),
             Packing::Deflate => {
-                let unpacked = Unpacked::packed(strip.to_vec()).all(wanted as u64)?;
+                let unpacked = slices::complete(Unpacked::packed(strip.to_vec()).all(wanted as u64))?;
                 out.extend_from_slice(&unpacked[..wanted.min(unpacked.len())]);
             }
             Packing::Lzw => lzw(strip, start + wanted, out),
@@ -392,9 +393,9 @@ impl Stack {
     }
 }
 
-/// Reads a stack of pages.
-pub(super) fn read(file: Unpacked) -> Result<Image, ImageReadError> {
-    let bytes = file.all(MAX_IMAGE_BYTES)?;
+/// Reads a stack of pages, each as a slice of work.
+pub(super) async fn read(file: Unpacked) -> Result<Image, ImageReadError> {
+    let bytes = file.all(MAX_IMAGE_BYTES).await?;
     let (file, mut next) = File::new(&bytes)?;
     let mut pages = Vec::new();
     while next != 0 && pages.len() < MOST_PAGES {
@@ -437,6 +438,7 @@ pub(super) fn read(file: Unpacked) -> Result<Image, ImageReadError> {
             return Err(wrong(FORMAT, quoted(&text), message));
         }
         append(page, &own, &mut data)?;
+        slices::pause().await;
     }
     let layout = Layout { step: form.step, ..Layout::plain(form.voxel_type, file.is_big_endian) };
     let size = [form.width, form.height, slices];
@@ -449,7 +451,8 @@ pub(super) fn read(file: Unpacked) -> Result<Image, ImageReadError> {
     let count = size.iter().product();
     let found = data.len() as u64;
     let voxels = Voxels::of_file(data, layout, count);
-    let image = Image::of(size, voxels.ok_or(ImageReadError::CutOff { format: FORMAT, needed, found })?)?;
+    let voxels = voxels.ok_or(ImageReadError::CutOff { format: FORMAT, needed, found })?;
+    let image = Image::of(size, voxels).await?;
     let placement = Placement::new(DMat3::from_diagonal(axes), DVec3::ZERO)?;
     Ok(Image { placement, notes: notes.into(), ..image })
 }

@@ -128,7 +128,7 @@ impl ComponentSearch {
         for ((&Witness { position: exact, factor }, mut position), mut normal) in
             starts.iter().zip(points).zip(landed)
         {
-            if normal.is_none() {
+            if normal.is_none() && probe.field.pieces().is_some() {
                 // Where branches meet smoothly on the surface f may have no gradient there.
                 let branch = probe.field.label(exact);
                 let mut place = [exact.as_vec3()];

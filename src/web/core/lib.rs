@@ -13,7 +13,8 @@ use marching_particles::session::{
     Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, ImageFacts, ImagePromise, Language,
     Lengths, OpenedMesh, Session, SolidSettings, SpacingText, describe,
 };
-use marching_particles::{Image, TriangleMesh, Value, VoxelType};
+use marching_particles::slices::Estimated;
+use marching_particles::{Image, Section, TriangleMesh, Value, VoxelType};
 use marching_particles_values::{answer, read, to_js};
 use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -59,7 +60,16 @@ pub struct Core {
     /// The last opened file, with its name. The field keeps its own copy, which shares voxels and
     /// faces.
     opened: Option<(String, Opened)>,
+    /// The bytes of the file that is read.
+    bytes: Vec<u8>,
+    /// Of so many voxels along each axis of its image, the first is kept.
+    step: usize,
+    /// The image that is opened, with its facts.
+    opening: Option<Opening>,
 }
+
+/// The name of an image, and the work of opening it.
+type Opening = (String, Estimated<'static, Result<(Image, ImageFacts), Fault>>);
 
 /// The contents of a file or an array.
 enum Opened {
@@ -74,13 +84,17 @@ impl Core {
     #[expect(clippy::new_without_default, reason = "a constructor for JavaScript")]
     pub fn new() -> Self {
         console_error_panic_hook::set_once();
-        Self { session: Session::new(), opened: None }
+        Self::of(Session::new())
     }
 
     /// A session whose first formula is treated as that of no gallery surface, whatever its text.
     pub fn without_surface() -> Self {
         console_error_panic_hook::set_once();
-        Self { session: Session::without_surface(), opened: None }
+        Self::of(Session::without_surface())
+    }
+
+    fn of(session: Session) -> Self {
+        Self { session, opened: None, bytes: Vec::new(), step: 1, opening: None }
     }
 
     /// The description of all settings, surfaces and figures: `Description`.
@@ -143,36 +157,84 @@ impl Core {
         }))
     }
 
-    /// What an image file promises, by its first megabyte or all its bytes: an `Answer` with
-    /// `ImagePromise`.
+    /// The size and type of the image in a file, and the memory that it needs, from the first
+    /// megabyte of the file or all its bytes: an `Answer` with `ImagePromise`.
     #[wasm_bindgen(unchecked_return_type = "Answer<ImagePromise, Fault>")]
     pub fn image_promise(&self, name: &str, start: &[u8]) -> JsValue {
         let outline = Image::outline(name, start).map_err(|error| Fault::new(FaultKind::Image, &error));
         answer(outline.map(|outline| ImagePromise::of(outline.as_ref())))
     }
 
-    /// Opens an image file, for [`Core::set_opened`]: an `Answer` with `ImageFacts`. `beside`
-    /// returns the bytes of another file by name. After an error the last valid image stays.
-    #[wasm_bindgen(unchecked_return_type = "Answer<ImageFacts, Fault>")]
+    /// Begins a file of this size, whose bytes [`Core::add_bytes`] appends. One that has been begun
+    /// is forgotten.
+    pub fn begin_file(&mut self, size: usize) {
+        (self.bytes, self.step, self.opening) = (Vec::new(), 1, None);
+        // Without the memory, the bytes are refused as they come.
+        let _ = self.bytes.try_reserve_exact(size);
+    }
+
+    /// Appends bytes to the file that was begun.
+    pub fn add_bytes(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// Keeps one voxel in `step` along each axis of the image in the file that was begun.
+    pub fn keep_one_in(&mut self, step: usize) {
+        self.step = step.max(1);
+    }
+
+    /// Begins to open the image in the file whose bytes have been added. [`Core::open_step`] does
+    /// the work. `beside` returns the bytes of another file by name.
     pub fn open_image(
         &mut self,
         name: String,
-        bytes: Vec<u8>,
         #[wasm_bindgen(unchecked_param_type = "(name: string) => Uint8Array | undefined")] beside: Function,
-    ) -> JsValue {
-        let beside = |name: &str| {
+    ) {
+        let beside = move |name: &str| {
             let found = beside.call1(&JsValue::NULL, &JsValue::from_str(name));
             let bytes = found.ok().and_then(|bytes| bytes.dyn_into::<Uint8Array>().ok());
             bytes.map(|bytes| bytes.to_vec()).ok_or_else(|| "choose both files together".to_owned())
         };
-        let image = Image::read(&name, bytes, beside).map_err(|error| Fault::new(FaultKind::Image, &error));
-        answer(image.map(|image| self.opened(name, image)))
+        let (bytes, step) = (core::mem::take(&mut self.bytes), self.step);
+        let outline = Image::outline(&name, &bytes[..bytes.len().min(1 << 20)]).ok().flatten();
+        let image = Image::read_in_slices(name.clone(), bytes, beside);
+        let work = async move {
+            let fault = |error: &dyn core::fmt::Display| Fault::new(FaultKind::Image, &error);
+            let mut image = image.await.map_err(|error| fault(&error))?;
+            if step > 1 {
+                image = image.coarser_in_slices(step).await.map_err(|error| fault(&error))?;
+            }
+            let facts = ImageFacts::of(&image).await;
+            Ok((image, facts))
+        };
+        let expected = outline.map_or(0, |outline| outline.slices());
+        self.opening = Some((name, Estimated::new(Box::pin(work), expected)));
+    }
+
+    /// Does up to `budget` slices of the work of opening an image, for [`Core::set_opened`].
+    /// Returns the share that is done; at the end an `Answer` with `ImageFacts`. After an error the
+    /// last valid image stays.
+    #[wasm_bindgen(unchecked_return_type = "number | Answer<ImageFacts, Fault>")]
+    pub fn open_step(&mut self, budget: u32) -> JsValue {
+        let nothing = || Fault::new(FaultKind::Request, &"no file has been begun");
+        let Some((name, mut work)) = self.opening.take() else {
+            return answer(Err::<ImageFacts, _>(nothing()));
+        };
+        let Some(opened) = work.advance(budget) else {
+            let share = work.fraction();
+            self.opening = Some((name, work));
+            return share.into();
+        };
+        answer(opened.map(|(image, facts)| {
+            self.opened = Some((name, Opened::Image(image)));
+            facts
+        }))
     }
 
     /// Opens an image from an array: the bytes of voxels of a type such as `int16`, the index along
     /// the first axis changing fastest, and the affine map from indices to points, row by row.
-    /// Returns an `Answer` with `ImageFacts`.
-    #[wasm_bindgen(unchecked_return_type = "Answer<ImageFacts, Fault>")]
+    /// Returns the reason if that fails, else null.
+    #[wasm_bindgen(unchecked_return_type = "Fault | null")]
     pub fn open_voxels(
         &mut self,
         name: String,
@@ -182,13 +244,7 @@ impl Core {
         bytes: Vec<u8>,
     ) -> JsValue {
         let image = image_of(voxel_type, size, rows, bytes);
-        answer(image.map(|image| self.opened(name, image)))
-    }
-
-    fn opened(&mut self, name: String, image: Image) -> ImageFacts {
-        let facts = ImageFacts::of(&image);
-        self.opened = Some((name, Opened::Image(image)));
-        facts
+        to_js(&image.map(|image| self.opened = Some((name, Opened::Image(image)))).err())
     }
 
     /// Opens a triangle mesh file, for [`Core::set_opened`]. Returns the reason if that fails, else
@@ -219,9 +275,26 @@ impl Core {
         self.opened = None;
     }
 
+    /// Does up to `budget` slices of the work of [`Core::set_opened`] with this request, which then
+    /// takes what is made. Returns the share that is done, 1 at the end, also after an error. A
+    /// call with another choice begins again.
+    pub fn make_opened(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
+        budget: u32,
+    ) -> f64 {
+        match (read::<FieldRequest>(request, FaultKind::Request), &self.opened) {
+            (Ok(request), Some((_, Opened::Image(image)))) => {
+                self.session.make_image(image, &request, budget)
+            }
+            (Ok(request), Some((_, Opened::Mesh(mesh)))) => self.session.make_mesh(mesh, &request, budget),
+            _ => 1.0,
+        }
+    }
+
     /// Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
-    /// parameters (`iso`, `label`, `smooth` and `dark` of an image, `edges` and `smooth` of a
-    /// mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
+    /// parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges` and `smooth`
+    /// of a mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
     /// `FieldAnswer`. After an error the last valid field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_opened(
@@ -234,6 +307,14 @@ impl Core {
             Some((name, Opened::Mesh(mesh))) => self.session.set_mesh(mesh, name, &request),
             None => Err(Fault::new(FaultKind::Request, &"no file has been opened")),
         }))
+    }
+
+    /// The voxels of the image in a plane: at `place`, nine numbers for a corner and the steps along
+    /// two directions, with so many points along these. NaN outside the image; empty without one.
+    pub fn section(&self, place: &[f64], width: usize, height: usize) -> Vec<f32> {
+        let [corner, across, along] = core::array::from_fn(|k| DVec3::from_slice(&place[3 * k..]));
+        let section = Section { corner, steps: [across, along], size: [width, height] };
+        self.session.section(&section).unwrap_or_default()
     }
 
     /// Changes the field to a function that takes the coordinates of up to 512 points and an array

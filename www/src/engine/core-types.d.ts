@@ -479,11 +479,13 @@ export type ImageInfo = {
   noise: number,
   /** Whether darker voxels are inside. */
   is_dark_inside: boolean,
+  /** Whether a surface that the border of the image cuts is closed there. */
+  is_closed: boolean,
   /** Decisions that were made, in sentences. */
   notes: Array<string>,
 };
 
-/** What the header of a file announces. */
+/** The size and type of an image, and the memory that it needs, from the header of its file. */
 export type ImagePromise = {
   /** Voxels along each axis; none if that takes the whole file. */
   size: [number, number, number] | null,
@@ -491,6 +493,8 @@ export type ImagePromise = {
   voxel_type: string,
   /** Bytes of memory for reading and filtering; 0 if that takes the whole file. */
   memory: number,
+  /** Bytes of the voxels alone; 0 if that takes the whole file. */
+  bytes: number,
 };
 
 /** The sign of f inside the closed parts of a surface. */

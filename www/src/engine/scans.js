@@ -31,6 +31,14 @@ export const SCANS = [
     words: 'image volume molecule cube orbital',
     parameters: { iso: 300 },
   },
+  {
+    id: 'scan-salt',
+    name: 'Salt dome',
+    story:
+      'A body of salt among layers of rock, as a seismic survey shows it. A cutting plane shows the layers that it has lifted.',
+    words: 'image volume seismic geology reservoir',
+    parameters: { iso: 500 },
+  },
 ];
 
 /** @param {string} id */

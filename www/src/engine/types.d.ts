@@ -109,10 +109,10 @@ export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { p
 /** By the settings' names; a missing one has its default. */
 export type Settings = Record<string, number | string>;
 /**
- * The progress of a run as the worker tells it. `phase` has two more values than in the core: in
- * `mesh` the particles are joined, in `quality` they are measured.
+ * The progress of a run as the worker tells it. `phase` has three more values than in the core: in
+ * `making` the field is made of a file, in `mesh` the particles are joined, in `quality` they are measured.
  */
-export type ToldProgress = Omit<CoreProgress, 'phase'> & { phase: CorePhase | 'mesh' | 'quality' };
+export type ToldProgress = Omit<CoreProgress, 'phase'> & { phase: CorePhase | 'making' | 'mesh' | 'quality' };
 /** The progress of the present run, as the page shows it. */
 export type Progress = ToldProgress & { run: number; live: boolean };
 /** What a run that samples is for: {@link KINDS} says what follows from it. */
@@ -397,6 +397,8 @@ export interface EngineCommands {
   readNumber: (text: string) => Promise<number | null>;
   /** what is wrong with the formula of a thickness or a spacing on the present surface; null if nothing is */
   textFault: (what: 'thickness' | 'spacing', text: string) => Promise<string | null>;
+  /** the voxels of the image in a rectangle of so many pixels; NaN outside it, null without an image */
+  section: (sheet: { corner: Vec3; sides: [Vec3, Vec3]; size: [number, number] }) => Promise<Float32Array | null>;
   /** `enlarges`: nobody has set this box, so the camera fits it and the next formula ends it */
   setBounds: (bounds: Bounds | null, options?: { live?: boolean; enlarges?: boolean }) => void;
   /** whether the box was enlarged by a press, around an `endless` surface or another; reads the state */

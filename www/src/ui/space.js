@@ -104,13 +104,21 @@ export function sectionOf(bounds, { normal, offset }) {
   }
   if (points.length < 3) return [];
   const middle = vec((k) => points.reduce((sum, p) => sum + p[k], 0) / points.length);
-  const u = across(normal);
-  const v = cross(normal, u);
+  const { u, v } = planeOf(normal);
   const angle = (/** @type {Vec3} */ p) => {
     const from = along(p, middle, -1);
     return Math.atan2(dot(from, v), dot(from, u));
   };
   return points.sort((p, q) => angle(p) - angle(q));
+}
+
+/**
+ * Returns two unit vectors in a plane with this unit normal. The three are right-handed.
+ * @param {Vec3} normal
+ */
+export function planeOf(normal) {
+  const u = across(normal);
+  return { u, v: cross(normal, u) };
 }
 
 /** Returns a unit vector perpendicular to a unit vector. @param {ArrayLike<number>} n @returns {Vec3} */

@@ -154,6 +154,21 @@ describe('an image', () => {
     expect(highest).toBeCloseTo(15.1, 3);
   });
 
+  test('is closed at the border of the image', async () => {
+    const rod = Float32Array.from(
+      { length: 20 ** 3 },
+      (_, at) => 6 - Math.hypot((at % 20) - 9.3, (((at / 20) | 0) % 20) - 9.6),
+    );
+    const given = { image: rod, size: /** @type {[number, number, number]} */ ([20, 20, 20]) };
+    const open = await made.sample(given, { iso: 0, smooth: 0, count: 500 });
+    const closed = await made.sample(given, { iso: 0, smooth: 0, closeBorder: true, count: 500 });
+    const highest = (/** @type {Float32Array | Float64Array} */ points) =>
+      Math.max(...points.filter((_, k) => k % 3 === 2));
+    expect(highest(open.points)).toBeCloseTo(19, 3);
+    expect(highest(closed.points)).toBeCloseTo(19.5, 1);
+    await expect(made.sample('x^2 + y^2 + z^2 = 1', { closeBorder: true })).rejects.toThrow(/closeBorder/);
+  });
+
   test('is refused with what is wrong', async () => {
     const image = ball;
     for (const [field, options, words] of /** @type {[any, any, RegExp][]} */ ([

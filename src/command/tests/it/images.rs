@@ -44,6 +44,25 @@ fn an_image_is_sampled_at_the_value_that_is_said() {
 }
 
 #[test]
+fn a_surface_that_the_border_cuts_is_closed_if_that_is_said() {
+    let side = 20;
+    let off = |at: usize| (at % side) as f64 - 9.4;
+    let rod = (0..side * side * side).map(|at| 6.0 - (off(at).powi(2) + off(at / side).powi(2)).sqrt());
+    let voxels: Vec<u8> = rod.flat_map(f64::to_le_bytes).collect();
+    let path = npy("rod.npy", [side; 3], "<f8", &voxels).display().to_string();
+    let mesh = file("rod.stl").display().to_string();
+    let given = ["--image", &path, "--iso", "0", "--smooth", "0", "--count", "800", "--mesh", &mesh];
+    let open = sample(&given);
+    assert_eq!((&open["mesh"]["borders"], &open["image"]["is_closed"]), (&2.into(), &false.into()));
+    let closed = sample(&[given.as_slice(), &["--close-border"]].concat());
+    assert_eq!((&closed["mesh"]["borders"], &closed["mesh"]["euler"]), (&0.into(), &2.into()));
+    // Half a voxel longer at both ends.
+    let volume = closed["mesh"]["volume"].as_f64().expect("a closed mesh");
+    let exact = std::f64::consts::PI * 36.0 * 20.0;
+    assert!((volume / exact - 1.0).abs() < 0.03, "{volume} {exact}");
+}
+
+#[test]
 fn the_report_says_how_the_value_was_chosen() {
     let path = ball("chosen.npy");
     let text = stdout(&run(&["sample", "--image", &path, "--count", "500"]));

@@ -33,7 +33,7 @@ import { change, changeView, description, showAll } from '../store.js';
  */
 /**
  * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'chooseOfFile' | 'pull' | 'setPulls' |
- *   'declareParameter' | 'readNumber' | 'textFault' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' |
+ *   'declareParameter' | 'readNumber' | 'textFault' | 'section' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' |
  *   'setSetting' | 'resetSetting'>} InputCommands
  */
 
@@ -209,6 +209,12 @@ export function inputCommands({ store, scheduler, framing }) {
       const plain = Number(text.trim().replace(/^([-+]?\d+),(\d+)$/, '$1.$2'));
       if (text.trim() !== '' && Number.isFinite(plain)) return plain;
       return scheduler.sampling.client.number(text);
+    },
+    section({ corner, sides, size }) {
+      // The points are the middles of the pixels.
+      const steps = sides.map((side, k) => side.map((length) => length / size[k]));
+      const first = corner.map((c, k) => c + 0.5 * (steps[0][k] + steps[1][k]));
+      return scheduler.sampling.client.section([...first, ...steps[0], ...steps[1]], size);
     },
     textFault: (what, text) => scheduler.sampling.client.textFault(what, text),
     setBounds(bounds, { live = false, enlarges = false } = {}) {

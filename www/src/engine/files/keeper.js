@@ -1,16 +1,21 @@
 /**
- * The file that the worker's core has open. Each job names its file. If the core has another one, or has been
- * restarted, the file is opened again before the job begins.
+ * The file that the worker's core has open, and the field that is made of it. Each job names its file. If the core has
+ * another one, or has been restarted, the file is opened again before the job begins. Then the field of the job is made
+ * in slices, while the core samples the previous one.
  *
  * @module
  */
-import { openGiven } from './open.js';
+import { nextBudget } from '../bundle/budget.js';
+import { FIRST_SLICES, openGiven } from './open.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
  * @import { FieldAnswer, FieldRequest } from '../types.js'
- * @import { KeyedFile, Opened, Refused } from './types.js'
+ * @import { KeyedFile, MakeEnv, Opened, OpenEnv, Refused } from './types.js'
  */
+
+/** Duration of a step while a field is made: several times that of a run, which would be replaced and goes on meanwhile. */
+const MAKE_MS = 24;
 
 /** @param {Refused} refused @returns {FieldAnswer} */
 const refusalOf = ({ kind, message }) => ({
@@ -30,6 +35,7 @@ const refusalOf = ({ kind, message }) => ({
 
 export class FileKeeper {
   #mostBytes;
+  #env;
   #begins;
   /** The key of the core's open file. */
   #key = '';
@@ -37,13 +43,17 @@ export class FileKeeper {
   #refused = { key: '', kind: 'request', message: '' };
   /** The key of the file that is being opened, and the number of that attempt. */
   #opening = { key: '', id: 0 };
+  /** The field that is made or was made, by its file and request, and whether that is done. */
+  #field = { name: '', isMade: false };
 
   /**
    * @param {number} mostBytes  memory that a file may take
+   * @param {Pick<OpenEnv, 'nowMs' | 'pause'>} env
    * @param {() => void} [begins]  called before the core is silent for long
    */
-  constructor(mostBytes, begins = () => {}) {
+  constructor(mostBytes, env, begins = () => {}) {
     this.#mostBytes = mostBytes;
+    this.#env = env;
     this.#begins = begins;
   }
 
@@ -56,7 +66,7 @@ export class FileKeeper {
     const id = this.#opening.id + 1;
     this.#opening = { key: file.key, id };
     const isOver = () => this.#opening.id !== id;
-    const opened = await openGiven(core, file, { tell, isOver, mostBytes: this.#mostBytes });
+    const opened = await openGiven(core, file, { ...this.#env, tell, isOver, mostBytes: this.#mostBytes });
     if (opened?.ok) this.#key = file.key;
     if (isOver()) return null;
     this.#opening = { key: '', id };
@@ -64,24 +74,54 @@ export class FileKeeper {
     return opened;
   }
 
-  /** Cancels the opening of a file. */
+  /** Cancels the opening of a file and the making of a field. */
   stop() {
     this.#opening = { key: '', id: this.#opening.id + 1 };
+    this.#field = { name: '', isMade: false };
   }
 
   /**
-   * Whether the field of a file can be set now. If not, the file is opened and `then` is called.
-   * @param {Core} core @param {KeyedFile} file @param {(error?: unknown) => void} then
+   * Whether the field of a file can be set now. If not, the file is opened, or the field is made, and `whenReady` is called.
+   * @param {Core} core @param {KeyedFile} file @param {Partial<FieldRequest>} request
+   * @param {{tell?: (fraction: number) => void, whenReady: (error?: unknown) => void}} told
    */
-  isReady(core, file, then) {
-    if (this.#key === file.key || this.#refused.key === file.key) return true;
-    if (this.#opening.key !== file.key) this.open(core, file).then(() => then(), then);
-    return false;
+  isReady(core, file, request, { tell = () => {}, whenReady }) {
+    if (this.#refused.key === file.key) return true;
+    if (this.#key !== file.key) {
+      if (this.#opening.key !== file.key) this.open(core, file).then(() => whenReady(), whenReady);
+      return false;
+    }
+    const name = `${file.key} ${JSON.stringify(request)}`;
+    if (this.#field.name !== name) {
+      this.#field = { name, isMade: false };
+      const made = this.#make(core, request, { ...this.#env, tell });
+      if (!this.#field.isMade) made.then(() => whenReady(), whenReady);
+    }
+    return this.#field.isMade;
   }
 
-  /** @param {Core} core @param {KeyedFile} file @param {Partial<FieldRequest>} field @returns {FieldAnswer} */
-  setField(core, file, field) {
-    this.#begins();
-    return this.#key === file.key ? core.set_opened(field) : refusalOf(this.#refused);
+  /**
+   * Makes a field in slices, unless another one is wanted before the end. A field that takes one slice is made at once.
+   * @param {Core} core @param {Partial<FieldRequest>} request @param {MakeEnv} env
+   */
+  async #make(core, request, { nowMs, pause, tell }) {
+    const field = this.#field;
+    for (let slices = FIRST_SLICES; this.#field === field; ) {
+      const before = nowMs();
+      const share = core.make_opened(request, slices);
+      if (share === 1) {
+        field.isMade = true;
+        return;
+      }
+      slices = nextBudget(slices, nowMs() - before, MAKE_MS);
+      tell(share);
+      await pause();
+    }
+  }
+
+  /** @param {Core} core @param {KeyedFile} file @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
+  setField(core, file, request) {
+    this.#field = { name: '', isMade: false };
+    return this.#key === file.key ? core.set_opened(request) : refusalOf(this.#refused);
   }
 }

@@ -4,6 +4,7 @@
  *
  * @module
  */
+import { nextBudget } from '../bundle/budget.js';
 import { words } from '../bundle/load.js';
 
 /**
@@ -15,7 +16,9 @@ import { words } from '../bundle/load.js';
 /** This much of a file is enough for its header. */
 const START_BYTES = 1 << 20;
 /** Share of the work that reading takes. The core does the rest. */
-const READ_SHARE = 0.7;
+const READ_SHARE = 0.5;
+/** First budget of the core's work, in slices of some ten microseconds. */
+export const FIRST_SLICES = 64;
 /**
  * Memory to read, repair and sample a mesh, divided by the size of its file: a triangle has 50 bytes in a binary STL
  * file and about 600 in the core's trees and tables.
@@ -24,22 +27,55 @@ const MESH_FACTOR = 15;
 
 /** Ends the reading with a message for the user. */
 class Refusal extends Error {
-  /** @param {FaultKind} kind @param {string} message */
-  constructor(kind, message) {
+  /** @param {FaultKind} kind @param {string} message @param {number} [step]  with which it can be opened */
+  constructor(kind, message, step) {
     super(message);
     this.kind = kind;
+    this.step = step;
   }
 }
 
 const megabytes = (/** @type {number} */ bytes) => Math.max(1, Math.round(bytes / 1e6)).toLocaleString('en');
 
+/** Steps from voxel to voxel that are offered for an image that does not fit into memory. */
+const STEPS = [2, 3, 4];
+
+/**
+ * The memory of an image of which every so-manieth voxel is kept: all voxels are read, and the others filtered.
+ * @param {number} step @param {ImagePromise} promise
+ */
+function memoryWith(step, { size, memory, bytes }) {
+  return step === 1 || !size ? memory : bytes + memory / step ** 3;
+}
+
 /**
  * Describes an image from its header.
- * @param {ImagePromise} promise
+ * @param {ImagePromise} promise @param {number} memory
  */
-function promised({ size, voxel_type, memory }) {
+function promised({ size, voxel_type }, memory) {
   if (!size) return 'Reading';
   return `Reading ${size.join(' × ')} voxels of ${voxel_type}, about ${megabytes(memory)} MB of memory`;
+}
+
+/**
+ * Reads a file into the core, without a copy of all of it here. Returns false if it is cancelled.
+ * @param {Core} core @param {Blob} file @param {(share: number) => void} tell @param {() => boolean} isOver
+ */
+async function readInto(core, file, tell, isOver) {
+  core.begin_file(file.size);
+  const reader = file.stream().getReader();
+  for (let at = 0; ; ) {
+    const { done, value } = await reader.read();
+    if (isOver()) {
+      void reader.cancel();
+      core.begin_file(0);
+      return false;
+    }
+    if (done) return true;
+    core.add_bytes(value);
+    at += value.length;
+    tell(at / file.size);
+  }
 }
 
 /**
@@ -72,7 +108,7 @@ export async function openGiven(core, given, env) {
     return given.as === 'mesh' ? await openedMesh(core, given, env) : await openedImage(core, given, env);
   } catch (error) {
     if (error instanceof WebAssembly.RuntimeError) throw error;
-    if (error instanceof Refusal) return { ok: false, kind: error.kind, message: error.message };
+    if (error instanceof Refusal) return { ok: false, kind: error.kind, message: error.message, step: error.step };
     return { ok: false, kind: given.as, message: `the file cannot be read: ${words(error)}` };
   }
 }
@@ -97,18 +133,20 @@ async function openedMesh(core, { name, file }, { tell, isOver, mostBytes }) {
 }
 
 /** @param {Core} core @param {GivenFile} given @param {OpenEnv} env @returns {Promise<Opened>} */
-async function openedImage(core, { name, file, beside }, { tell, isOver, mostBytes }) {
+async function openedImage(core, { name, file, beside, step = 1 }, { tell, isOver, mostBytes, nowMs, pause }) {
   tell('Reading', 0);
   const start = new Uint8Array(await file.slice(0, START_BYTES).arrayBuffer());
   const promise = core.image_promise(name, start);
   if (!promise.ok) throw new Refusal('image', promise.error.message);
-  if (promise.memory > mostBytes)
+  const needed = memoryWith(step, promise);
+  if (needed > mostBytes)
     throw new Refusal(
       'image',
-      `the image of ${promise.size?.join(' × ')} voxels takes about ${megabytes(promise.memory)} MB of memory, and ` +
-        `there are ${megabytes(mostBytes)} MB here; cut out the part that matters, or keep every second voxel`,
+      `the image of ${promise.size?.join(' × ')} voxels takes about ${megabytes(needed)} MB of memory, and ` +
+        `there are ${megabytes(mostBytes)} MB here; cut out the part that matters, or keep fewer voxels`,
+      STEPS.find((coarser) => coarser > step && memoryWith(coarser, promise) <= mostBytes),
     );
-  const label = promised(promise);
+  const label = promised(promise, needed);
   tell(label, 0);
   /** @type {Map<string, Uint8Array>} */
   const others = new Map();
@@ -116,10 +154,22 @@ async function openedImage(core, { name, file, beside }, { tell, isOver, mostByt
     if (isOver()) return null;
     others.set(other.name, new Uint8Array(await other.file.arrayBuffer()));
   }
-  const bytes = await bytesOf(file, (share) => tell(label, READ_SHARE * share), isOver);
-  if (!bytes) return null;
-  const answer = core.open_image(name, bytes, (wanted) => others.get(wanted));
-  if (!answer.ok) throw new Refusal('image', answer.error.message);
-  const { ok: _, ...facts } = answer;
-  return { ok: true, facts };
+  if (!(await readInto(core, file, (share) => tell(label, READ_SHARE * share), isOver))) return null;
+  if (step > 1) core.keep_one_in(step);
+  core.open_image(name, (wanted) => others.get(wanted));
+  for (let slices = FIRST_SLICES; ; ) {
+    const before = nowMs();
+    const answer = core.open_step(slices);
+    if (typeof answer === 'number') {
+      slices = nextBudget(slices, nowMs() - before);
+      tell(label, READ_SHARE + (1 - READ_SHARE) * answer);
+      await pause();
+      if (!isOver()) continue;
+      core.begin_file(0);
+      return null;
+    }
+    if (!answer.ok) throw new Refusal('image', answer.error.message);
+    const { ok: _, ...facts } = answer;
+    return { ok: true, facts };
+  }
 }

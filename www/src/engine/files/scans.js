@@ -69,8 +69,23 @@ function benzene(x, y, z, random) {
   return sum + 15 * (random() + random());
 }
 
+/** A stem of salt under a wide cap, between layers that it has lifted. @type {Value} */
+function salt(x, y, z, random) {
+  const [a, b] = [x - MIDDLE, y - MIDDLE];
+  const stem = 9 + 2 * wave(z / 40) - Math.sqrt((a + 4 * wave(z / 70)) ** 2 + b ** 2);
+  const cap = 11 - 11 * Math.sqrt((a / 22) ** 2 + (b / 18) ** 2 + ((z - 41) / 12) ** 2);
+  const below = Math.min(stem, 41 - z);
+  // The larger of the two depths below the boundary, with a fillet of a few voxels.
+  const joint = Math.max(0, 6 - Math.abs(below - cap));
+  const depth = Math.max(below, cap) + joint ** 2 / 24;
+  const share = Math.min(1, Math.max(0, 0.5 + 0.25 * depth));
+  const lift = 10 / (1 + (a ** 2 + b ** 2) / 300);
+  const layers = 180 * wave((z - lift + 2 * wave(x / 90)) / 8);
+  return 1000 * share + (1 - share) * layers + 30 * (random() + random());
+}
+
 /** @type {Record<string, Value>} */
-const VALUES = { 'scan-bone': bone, 'scan-bodies': bodies, 'scan-benzene': benzene };
+const VALUES = { 'scan-bone': bone, 'scan-bodies': bodies, 'scan-benzene': benzene, 'scan-salt': salt };
 
 /** Computes an image, as an NRRD file. @param {string} id */
 export function scanFile(id) {

@@ -215,18 +215,19 @@ export class ModelLoader {
   /**
    * Opens a file as an image or a mesh and samples its surface. With `elsePoints` it returns why a mesh has no surface,
    * instead of showing the reason.
-   * @param {KeyedFile['as']} as @param {File} file @param {{beside?: File[], elsePoints?: boolean}} [options]
+   * @param {KeyedFile['as']} as @param {File} file
+   * @param {{beside?: File[], elsePoints?: boolean, step?: number}} [options]
    * @returns {Promise<Refusal | undefined>}
    */
-  async #openFor(as, file, { beside = [], elsePoints = false } = {}) {
+  async #openFor(as, file, { beside = [], elsePoints = false, step = 1 } = {}) {
     this.cancel();
     this.#files += 1;
     const others = beside.map((other) => ({ name: other.name, file: other }));
-    const given = { as, key: `file ${this.#files}`, name: file.name, file, beside: others };
+    const given = { as, key: `file ${this.#files}`, name: file.name, file, beside: others, step };
     /** @type {Refusal | undefined} */
     let refused;
     const load = async () => {
-      const ending = await this.#open(given);
+      const ending = await this.#open(given, (coarser) => this.#openFor(as, file, { beside, step: coarser }));
       if (!elsePoints || !('refusal' in ending)) return ending;
       refused = ending.refusal;
       return { goesOn: /** @type {const} */ (true) };
@@ -251,11 +252,18 @@ export class ModelLoader {
     return this.#open({ as: 'image', key, name, file: scanFile(id), beside: [] });
   }
 
-  /** @param {KeyedFile} file @returns {Promise<Ending | { opened: Opened }>} */
-  async #open(file) {
+  /**
+   * @param {KeyedFile} file @param {(step: number) => void} [again]  opens it with fewer voxels
+   * @returns {Promise<Ending | { opened: Opened }>}
+   */
+  async #open(file, again) {
     const opened = await this.#openGiven(file, (label, fraction) => this.#tell(label, fraction));
     if (!opened) return { givenUp: true };
-    if (!opened.ok) return { refusal: { kind: opened.kind, message: opened.message } };
+    if (!opened.ok) {
+      const { kind, message, step } = opened;
+      const action = step && again ? { label: `Keep one voxel in ${step}`, run: () => again(step) } : undefined;
+      return { refusal: { kind, message, action } };
+    }
     this.#given.set(file.key, { file, facts: opened.facts });
     return { opened };
   }
@@ -294,10 +302,16 @@ export class ModelLoader {
   }
 
   /** @param {string} id @param {string} name @param {Refusal} refusal */
-  #refused(id, name, { kind, message, details }) {
+  #refused(id, name, { kind, message, details, action }) {
     const { loadingError, notice } = this.#store;
     loadingError.value = { id, name, kind, message };
-    notice.value = { id: 'file', kind: 'error', text: `${name}: ${message}`, ...(details ? { details } : {}) };
+    notice.value = {
+      id: 'file',
+      kind: 'error',
+      text: `${name}: ${message}`,
+      ...(details ? { details } : {}),
+      ...(action ? { action } : {}),
+    };
   }
 
   /** Cancels the current order. */

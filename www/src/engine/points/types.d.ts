@@ -7,7 +7,12 @@ import type { Store } from '../store.js';
 import type { Bounds, ModelInfo, PointsAnswer, SampleKind, SolvedAnswer } from '../types.js';
 
 export type WorkerLike = import('../bundle/types.js').WorkerLike<Order, FromPoints>;
-export type Refusal = { kind: string; message: string; details?: string };
+export type Refusal = {
+  kind: string;
+  message: string;
+  details?: string;
+  action?: { label: string; run: () => void };
+};
 /**
  * A request for a built-in model, by its id, or for a file, of whose points so many are to be fitted; null for the
  * default number.

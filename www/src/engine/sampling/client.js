@@ -25,7 +25,7 @@ export class SamplingClient {
   #wishes = { curvature: false, mesh: false, value: '' };
   /** Files that are being written. */
   #files = new Requests();
-  /** Texts that are being read as numbers or checked, and programs that are being written. */
+  /** Texts that are read as numbers or checked, programs that are written, and sections of an image. */
   #texts = new Requests();
   /** The file that is being opened, and the callback for its progress. */
   #opening = new Requests();
@@ -144,6 +144,16 @@ export class SamplingClient {
   }
 
   /**
+   * Returns the voxels of the image in a rectangle: NaN outside it; null without an image.
+   * @param {number[]} place  a corner and the steps along two directions @param {[number, number]} size  points
+   * @returns {Promise<Float32Array | null>}
+   */
+  section(place, size) {
+    if (!this.isThere) return Promise.resolve(null);
+    return this.#texts.make((request) => this.post({ type: 'section', request, place, size })).catch(() => null);
+  }
+
+  /**
    * Opens the file of an image or a mesh in the worker. Resolves with null if it is cancelled or the worker is gone.
    * @param {KeyedFile} file @param {(label: string, fraction: number) => void} onProgress
    * @returns {Promise<Opened>}
@@ -192,7 +202,7 @@ export class SamplingClient {
       case 'failed':
         return this.#onLoadFailed(message.message);
       case 'beat':
-      case 'filtering':
+      case 'opening':
       case 'crashed':
         return;
       case 'number':
@@ -203,6 +213,8 @@ export class SamplingClient {
         return;
       case 'fault':
         return this.#texts.answer(message.request, message.fault);
+      case 'section':
+        return this.#texts.answer(message.request, message.values);
       case 'open_progress':
         return this.#onOpening(message.label, message.fraction);
       case 'opened':

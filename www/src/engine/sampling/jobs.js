@@ -10,7 +10,6 @@ import { KINDS } from './kinds.js';
 /**
  * @import { Core } from '../../wasm/core/core.js'
  * @import { FileKeeper } from '../files/keeper.js'
- * @import { KeyedFile } from '../files/types.js'
  * @import { FieldAnswer } from '../types.js'
  * @import { FromWorker, Job, SampleJob, ToWorker } from './types.js'
  */
@@ -22,8 +21,9 @@ import { KINDS } from './kinds.js';
 const PATIENCE_MS = 150;
 
 /**
- * Opens files in the core. `isReady` opens a job's file if necessary, and the worker then asks again.
- * @typedef {{isReady: (core: Core, file: KeyedFile) => boolean, setField: FileKeeper['setField']}} Files
+ * Opens files in the core and makes fields of them. `isReady` does so for a job if necessary, and the worker then asks
+ * again. `stop` ends that.
+ * @typedef {{isReady: (core: Core, job: SampleJob) => boolean, setField: FileKeeper['setField'], stop: () => void}} Files
  */
 /** Used if no job has a file. @type {Files} */
 const NO_FILES = {
@@ -31,6 +31,7 @@ const NO_FILES = {
   setField: () => {
     throw new Error('there are no files here');
   },
+  stop: () => {},
 };
 
 /** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
@@ -67,6 +68,9 @@ export class Jobs {
   /** The latest job, whose field the core does not have yet. @type {Pending | null} */
   #waiting;
 
+  /** The job whose file is opened, or whose field is made. @type {Pending | null} */
+  #making;
+
   /**
    * The job whose field the core has accepted. It starts when the running job has ended.
    * @type {Pending | null}
@@ -85,6 +89,7 @@ export class Jobs {
     this.#nowMs = nowMs;
     this.#files = files;
     this.#waiting = null;
+    this.#making = null;
     this.#accepted = null;
     /** The running job. @type {Job | null} */
     this.running = null;
@@ -98,10 +103,15 @@ export class Jobs {
 
   /**
    * Stops all jobs so far. A waiting job that would follow the running one's particles is dropped: its surface has none
-   * yet, and the running job must keep its field, to which the particles belong.
+   * yet, and the running job must keep its field, to which the particles belong. So is one whose field is being made.
    */
   stop() {
     this.#stopped = true;
+    if (this.#making) {
+      this.#post({ type: 'dropped', id: this.#making.job.id });
+      this.#making = null;
+      this.#files.stop();
+    }
     const job = this.#waiting?.job;
     if (this.running && job && job.kind !== 'relax' && job.following.length > 0) {
       this.#post({ type: 'dropped', id: job.id });
@@ -149,13 +159,28 @@ export class Jobs {
     return isSpared === true && this.#nowMs() - this.#running.sinceMs < PATIENCE_MS;
   }
 
+  /**
+   * Takes the job whose field is to be set next. A field that is being made is completed while a control moves, since
+   * otherwise none would be.
+   */
+  #next() {
+    const waiting = this.#waiting;
+    if (this.#making && (!waiting || KINDS[waiting.job.kind].isLive)) return this.#making;
+    if (!waiting || this.#isPatient(waiting.job)) return null;
+    this.#waiting = null;
+    return waiting;
+  }
+
   /** @param {Core} core */
   #ask(core) {
-    const next = this.#waiting;
-    if (!next || this.#isPatient(next.job)) return;
+    const next = this.#next();
+    this.#making = null;
+    if (!next) return;
     const { job } = next;
-    if (job.kind !== 'relax' && job.file && !this.#files.isReady(core, job.file)) return;
-    this.#waiting = null;
+    if (job.kind !== 'relax' && job.file && !this.#files.isReady(core, job)) {
+      this.#making = next;
+      return;
+    }
     if (job.kind !== 'relax') {
       const answer = setField(core, job, this.#files);
       this.#post({ type: 'field', id: job.id, answer });

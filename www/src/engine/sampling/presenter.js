@@ -52,6 +52,11 @@ export class Presenter {
     this.store.progress.value = { ...idleProgress(), run: id, live, phase };
   }
 
+  /** Shows how far the field of a run is. @param {Ticket} run @param {number} fraction */
+  making({ id }, fraction) {
+    this.store.progress.value = { ...idleProgress(), run: id, phase: 'making', fraction };
+  }
+
   /** @param {ToldProgress} progress @param {Ticket} run */
   progress(progress, { id, request }) {
     if (request.kind === 'backdrop') return;

@@ -42,6 +42,8 @@ export class Sampler {
   #whole;
   #nowMs;
   #pace;
+  /** The job whose field was made last, or is being made. */
+  #made = 0;
 
   /** @param {SamplerOptions} options */
   constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
@@ -195,8 +197,11 @@ export class Sampler {
         return this.#ready(message.description);
       case 'field':
         return this.#fieldAnswered(message.id, message.answer);
+      case 'making':
+        return this.#making(message.id, message.fraction);
       case 'dropped':
         this.#happened(message);
+        if (!runningOf(this.ledger)) this.#presenter.idle({ phase: 'done' });
         return this.#dim();
       default:
     }
@@ -209,9 +214,10 @@ export class Sampler {
       case 'box':
         return this.#boxFound(message.answer, current);
       case 'progress':
-        return this.#presenter.progress(message.progress, current);
+        if (!this.#isMaking) this.#presenter.progress(message.progress, current);
+        return;
       case 'columns':
-        return this.#takeColumns(message, current);
+        return this.#takeColumns(this.#isMaking ? { ...message, progress: null } : message, current);
       case 'past':
         return this.#presenter.past(message, current);
       case 'done':
@@ -227,6 +233,19 @@ export class Sampler {
         return this.#happened({ type: 'reported' });
       default:
     }
+  }
+
+  /** Shows how far the field of a job is, instead of the run that it replaces. @param {number} id @param {number} fraction */
+  #making(id, fraction) {
+    const asked = askedFor(this.ledger, id);
+    if (!asked || KINDS[asked.request.kind].isLive) return;
+    this.#made = id;
+    this.#presenter.making(asked, fraction);
+  }
+
+  /** Whether the field is made of the job that was asked for last, but for those of a drag. */
+  get #isMaking() {
+    return askedFor(this.ledger, this.#made) !== undefined;
   }
 
   /** @param {Description} description */

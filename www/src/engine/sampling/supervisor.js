@@ -108,9 +108,8 @@ export class Supervisor {
       this.#rest();
     }
     this.#heard();
-    // The core reads and filters an image in one go, which takes seconds if the image is large.
-    if (message.type === 'filtering' || message.type === 'open_progress')
-      this.#deadline = this.#clock.now() + LOADING_MS;
+    // The core mends a mesh in one go, which takes seconds if the mesh is large.
+    if (message.type === 'opening' || message.type === 'open_progress') this.#deadline = this.#clock.now() + LOADING_MS;
     if (message.type === 'failed') {
       this.#drop();
       this.state = 'failed';

@@ -58,7 +58,7 @@ export type Job = SampleJob | RelaxJob;
  * sent after each run, and for the particles that the worker holds. `export` asks for the mesh as a file, once no job
  * is left. `number` asks for the number that a text without names stands for, `code` for the program that makes the
  * particles, `fault` for what is wrong with a formula of the settings. `measure` measures particles that the sampler
- * has not placed: a worker that is asked has no jobs. `open` opens the file of an image or a mesh, which `open_stop`
+ * has not placed: a worker that is asked has no jobs. `section` asks for the voxels in a plane. `open` opens the file of an image or a mesh, which `open_stop`
  * gives up. The first message is `core`, or `no_core` if the core could not be loaded.
  */
 export type ToWorker =
@@ -73,6 +73,7 @@ export type ToWorker =
   | { type: 'value'; text: string }
   | { type: 'fault'; request: number; what: 'thickness' | 'spacing'; text: string }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
+  | { type: 'section'; request: number; place: number[]; size: [number, number] }
   | { type: 'open'; request: number; file: KeyedFile }
   | { type: 'open_stop' }
   | { type: 'stop' }
@@ -138,7 +139,9 @@ export type FromWorker =
   | RecordMessage
   | ReportMessage
   | { type: 'file'; request: number; bytes: Uint8Array<ArrayBuffer> | null }
-  | { type: 'filtering' }
+  | { type: 'section'; request: number; values: Float32Array | null }
+  | { type: 'opening' }
+  | { type: 'making'; id: number; fraction: number }
   | { type: 'open_progress'; request: number; label: string; fraction: number }
   | { type: 'opened'; request: number; opened: Opened }
   | { type: 'change'; id: number; change: MeshChange }

@@ -10,7 +10,7 @@ import { FileKeeper } from '../files/keeper.js';
 import { curvatureColumn, meshColumn, runJob } from './job.js';
 import { Jobs, measured } from './jobs.js';
 import { compared, join, valued, write } from './joining.js';
-import { BEAT_MS } from './protocol.js';
+import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 
 /**
  * @import { Env, FromWorker, LoadFault, ToWorker } from './types.js'
@@ -29,16 +29,7 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
 const device = onPhone(navigator) ? 'phone' : 'desk';
-const opener = new FileKeeper(FILE_MB[device] * 1e6, () => post({ type: 'filtering' }));
-/** Continues once a job's file is open. @param {unknown} [error] */
-const opened = (error) => {
-  if (error) crashed(0, error);
-  else void pump();
-};
-const jobs = new Jobs(post, () => performance.now(), {
-  isReady: (ours, file) => opener.isReady(ours, file, opened),
-  setField: (ours, file, field) => opener.setField(ours, file, field),
-});
+const nowMs = () => performance.now();
 /** Number of column messages that the page has not yet drawn. */
 let undrawn = 0;
 /** Whether the page shows the curvature, and whether it draws a mesh. */
@@ -57,19 +48,35 @@ const crashOf = crashWords();
 
 // A message to itself ends the worker's task, so that waiting messages are handled. Browsers delay timers by 4 ms.
 const selfChannel = new MessageChannel();
-/** @type {(() => void) | null} */
-let resume = null;
-selfChannel.port1.onmessage = () => {
-  const go = resume;
-  resume = null;
-  go?.();
-};
+/** What waits for the end of the task: a run, and a field that is made meanwhile. @type {(() => void)[]} */
+const waiting = [];
+selfChannel.port1.onmessage = () => waiting.shift()?.();
 /** @returns {Promise<void>} */
 const pause = () =>
   new Promise((resolve) => {
-    resume = resolve;
+    waiting.push(resolve);
     selfChannel.port2.postMessage(null);
   });
+
+const opener = new FileKeeper(FILE_MB[device] * 1e6, { nowMs, pause }, () => post({ type: 'opening' }));
+/** Continues once a job's field is made. @param {unknown} [error] */
+const prepared = (error) => {
+  if (error) crashed(0, error);
+  else void pump();
+};
+let toldMs = 0;
+/** Tells how far a job's field is. @param {number} id @param {number} fraction */
+function tellMaking(id, fraction) {
+  if (nowMs() - toldMs < PROGRESS_MS) return;
+  toldMs = nowMs();
+  post({ type: 'making', id, fraction });
+}
+const jobs = new Jobs(post, nowMs, {
+  isReady: (ours, { id, file, field }) =>
+    !file || opener.isReady(ours, file, field, { tell: (share) => tellMaking(id, share), whenReady: prepared }),
+  setField: (ours, file, field) => opener.setField(ours, file, field),
+  stop: () => opener.stop(),
+});
 
 /** @type {Core | null} */
 let core = null;
@@ -79,7 +86,7 @@ const remesh = { isIt: false, compared: 0 };
 
 /** @param {Core} ours @returns {Env} */
 const surroundings = (ours) => ({
-  nowMs: () => performance.now(),
+  nowMs,
   pause,
   post: (message, transfer) => {
     if (message.type === 'columns') undrawn += 1;
@@ -213,6 +220,12 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
     case 'fault':
       post({ type: 'fault', request: data.request, fault: core?.text_fault(data.what, data.text) ?? null });
       break;
+    case 'section': {
+      const [width, height] = data.size;
+      const values = core?.section(new Float64Array(data.place), width, height);
+      post({ type: 'section', request: data.request, values: values?.length ? values : null });
+      break;
+    }
     case 'open':
       void open(data);
       break;

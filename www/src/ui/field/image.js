@@ -30,6 +30,7 @@ export function createImage(engine, description) {
     h('div', { class: 'chosen', hidden: () => labels.value.length === 0 }, createKind(engine, labels)),
     createLabels(engine, labels, info),
     h('div', { class: 'chosen', hidden: () => info.value?.label !== null }, createSide(engine)),
+    h('div', { class: 'chosen' }, createBorder(engine)),
     h('p', { class: 'quiet' }, () => info.value && filteredOf(info.value)),
     h('ul', { class: 'warnings', hidden: () => notes.value.length === 0 }, () => notes.value.map(createWarning)),
   );
@@ -54,7 +55,8 @@ function createKind(engine, labels) {
       { value: 'iso', label: 'Iso value' },
     ],
     value: () => (engine.state.value.parameters.label === undefined ? 'iso' : 'label'),
-    change: (value) => engine.chooseOfFile(value === 'label' ? { label: largest() } : {}),
+    change: (value) =>
+      engine.chooseOfFile(value === 'label' ? { ...ofBorder(engine), label: largest() } : ofBorder(engine)),
   });
 }
 
@@ -89,7 +91,13 @@ function createLabels(engine, labels, info) {
 /** The parameters that choosing another label keeps. @param {Engine} engine @returns {Record<string, number>} */
 function kept(engine) {
   const { smooth } = engine.state.peek().parameters;
-  return smooth === undefined ? {} : { smooth };
+  return { ...(smooth === undefined ? {} : { smooth }), ...ofBorder(engine) };
+}
+
+/** The choice for the border of the image. @param {Engine} engine @returns {Record<string, number>} */
+function ofBorder(engine) {
+  const { closed } = engine.state.peek().parameters;
+  return closed ? { closed } : {};
 }
 
 /** Creates the choice of the inner side. @param {Engine} engine */
@@ -104,6 +112,22 @@ function createSide(engine) {
     change: (value) => {
       const { dark: _, ...others } = engine.state.peek().parameters;
       engine.chooseOfFile(value === 'dark' ? { ...others, dark: 1 } : others);
+    },
+  });
+}
+
+/** Creates the choice of what becomes of a surface that the border of the image cuts. @param {Engine} engine */
+function createBorder(engine) {
+  return createSegmented({
+    name: 'At the border of the image',
+    choices: [
+      { value: 'open', label: 'Open at the border' },
+      { value: 'closed', label: 'Closed' },
+    ],
+    value: () => (engine.state.value.parameters.closed ? 'closed' : 'open'),
+    change: (value) => {
+      const { closed: _, ...others } = engine.state.peek().parameters;
+      engine.chooseOfFile(value === 'closed' ? { ...others, closed: 1 } : others);
     },
   });
 }

@@ -20,6 +20,8 @@ export const loadingOf = ({ name, label, fraction }) => `${name} · ${label} · 
 export function captionOf(progress, { partial, empty, busy, seconds, steps }) {
   const particles = plural(progress.particles, 'particle');
   switch (progress.phase) {
+    case 'making':
+      return busy ? `Making the field · ${formatShare(progress.fraction, 0)}` : resting();
     case 'seeding':
       return 'Looking for the surface';
     case 'generation':

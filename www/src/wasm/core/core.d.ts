@@ -29,6 +29,10 @@ import type {
 export class Core {
     [Symbol.dispose](): void;
     /**
+     * Appends bytes to the file that was begun.
+     */
+    add_bytes(bytes: Uint8Array | number[]): void;
+    /**
      * Adds a column of values at the particles, from a formula or a function like that of
      * [`Core::set_function`], doing up to `budget` slices of the work. Returns undefined until it
      * is complete; then the error in the value, else null.
@@ -38,6 +42,11 @@ export class Core {
      * The added column of this name; empty if there is none.
      */
     added_value(name: string): Float32Array<ArrayBuffer>;
+    /**
+     * Begins a file of this size, whose bytes [`Core::add_bytes`] appends. One that has been begun
+     * is forgotten.
+     */
+    begin_file(size: number): void;
     /**
      * Ends the run and keeps the particles: `Progress`.
      */
@@ -109,8 +118,8 @@ export class Core {
     fraction(): number;
     free(): void;
     /**
-     * What an image file promises, by its first megabyte or all its bytes: an `Answer` with
-     * `ImagePromise`.
+     * The size and type of the image in a file, and the memory that it needs, from the first
+     * megabyte of the file or all its bytes: an `Answer` with `ImagePromise`.
      */
     image_promise(name: string, start: Uint8Array | number[]): Answer<ImagePromise, Fault>;
     /**
@@ -119,6 +128,10 @@ export class Core {
      */
     join(budget: number): MeshAnswer | undefined;
     /**
+     * Keeps one voxel in `step` along each axis of the image in the file that was begun.
+     */
+    keep_one_in(step: number): void;
+    /**
      * Generation levels from particle `from` on.
      */
     levels(from: number): Uint32Array<ArrayBuffer>;
@@ -126,6 +139,12 @@ export class Core {
      * Refuses runs that need more than about `megabytes`, including their report.
      */
     limit_memory(megabytes: number): void;
+    /**
+     * Does up to `budget` slices of the work of [`Core::set_opened`] with this request, which then
+     * takes what is made. Returns the share that is done, 1 at the end, also after an error. A
+     * call with another choice begins again.
+     */
+    make_opened(request: Partial<FieldRequest>, budget: number): number;
     /**
      * Measures these particles, doing up to `budget` slices of the work: `Report` once complete,
      * nothing before.
@@ -160,21 +179,27 @@ export class Core {
      */
     open_faces(name: string, points: Float64Array | number[], faces: Uint32Array | number[]): Fault | null;
     /**
-     * Opens an image file, for [`Core::set_opened`]: an `Answer` with `ImageFacts`. `beside`
-     * returns the bytes of another file by name. After an error the last valid image stays.
+     * Begins to open the image in the file whose bytes have been added. [`Core::open_step`] does
+     * the work. `beside` returns the bytes of another file by name.
      */
-    open_image(name: string, bytes: Uint8Array | number[], beside: (name: string) => Uint8Array | undefined): Answer<ImageFacts, Fault>;
+    open_image(name: string, beside: (name: string) => Uint8Array | undefined): void;
     /**
      * Opens a triangle mesh file, for [`Core::set_opened`]. Returns the reason if that fails, else
      * null. After an error the previous file stays open.
      */
     open_mesh(name: string, bytes: Uint8Array | number[]): Fault | null;
     /**
+     * Does up to `budget` slices of the work of opening an image, for [`Core::set_opened`].
+     * Returns the share that is done; at the end an `Answer` with `ImageFacts`. After an error the
+     * last valid image stays.
+     */
+    open_step(budget: number): number | Answer<ImageFacts, Fault>;
+    /**
      * Opens an image from an array: the bytes of voxels of a type such as `int16`, the index along
      * the first axis changing fastest, and the affine map from indices to points, row by row.
-     * Returns an `Answer` with `ImageFacts`.
+     * Returns the reason if that fails, else null.
      */
-    open_voxels(name: string, voxel_type: string, size: Uint32Array | number[], rows: Float64Array | number[], bytes: Uint8Array | number[]): Answer<ImageFacts, Fault>;
+    open_voxels(name: string, voxel_type: string, size: Uint32Array | number[], rows: Float64Array | number[], bytes: Uint8Array | number[]): Fault | null;
     /**
      * Parents from particle `from` on; 0xffffffff for a seed.
      */
@@ -227,6 +252,11 @@ export class Core {
      */
     seams(): Uint32Array<ArrayBuffer>;
     /**
+     * The voxels of the image in a plane: at `place`, nine numbers for a corner and the steps along
+     * two directions, with so many points along these. NaN outside the image; empty without one.
+     */
+    section(place: Float64Array | number[], width: number, height: number): Float32Array<ArrayBuffer>;
+    /**
      * The pairs of rows that a crease connects, two numbers each; empty without creases.
      */
     segments(): Uint32Array<ArrayBuffer>;
@@ -245,8 +275,8 @@ export class Core {
     set_function(_function: (points: Float64Array, out: Float64Array, piece?: number) => void, request: Partial<FieldRequest>, labels?: (points: Float64Array, out: Uint32Array) => void): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
-     * parameters (`iso`, `label`, `smooth` and `dark` of an image, `edges` and `smooth` of a
-     * mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
+     * parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges` and `smooth`
+     * of a mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
      * `FieldAnswer`. After an error the last valid field stays.
      */
     set_opened(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;

@@ -71,6 +71,25 @@ test('an image is sampled, follows its iso value, and what is no image leaves it
     await settled(page);
   });
 
+  await test.step('the cutting plane shows the voxels, seen from the hidden side', async () => {
+    const slice = page.locator('.marks .slice');
+    await expect(slice).toBeHidden();
+    await page.locator('summary', { hasText: 'Cutting plane' }).click();
+    await page.getByRole('radio', { name: 'Free' }).check();
+    await expect(slice).toBeVisible();
+    // The middle of the ball is brighter than its rim, and opaque.
+    const pixels = await slice.evaluate((/** @type {any} */ canvas) => {
+      const { width, height } = canvas;
+      const at = (/** @type {number} */ x) => [...canvas.getContext('2d').getImageData(x, height >> 1, 1, 1).data];
+      return [at(width >> 1), at(Math.round(0.1 * width))];
+    });
+    expect(pixels[0][0]).toBeGreaterThan(pixels[1][0] + 50);
+    expect(pixels[0][3]).toBe(255);
+    await page.getByRole('button', { name: 'Flip' }).click();
+    await expect(slice).toBeHidden();
+    await page.getByRole('radio', { name: 'Off' }).check();
+  });
+
   await test.step('a file that is cut off, and one of another kind, are refused', async () => {
     const { digest } = await report(page);
     await choose(page, 'cut.nii', niftiOf(() => 1).subarray(0, 9_000));
@@ -92,6 +111,22 @@ test('an image is sampled, follows its iso value, and what is no image leaves it
     await expect(image).toBeVisible();
     expect(await state(page)).toMatchObject({ surface: 'file', parameters: { iso: -100 } });
   });
+  await clean();
+});
+
+/** A rod along z, which the border of the image cuts. */
+const ROD = niftiOf((p) => Math.round(100 * (10 - Math.hypot(p[0] - 15.3, p[1] - 15.3))));
+
+test('what the border cuts is open or closed', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
+  await choose(page, 'rod.nii', ROD);
+  await settled(page);
+  expect((await report(page)).cut).not.toBe(undefined);
+  expect((await report(page)).euler).toBe(0);
+  await page.getByRole('radio', { name: 'Closed' }).check();
+  await settled(page);
+  expect((await state(page)).parameters).toMatchObject({ closed: 1 });
+  expect((await report(page)).euler).toBe(2);
   await clean();
 });
 

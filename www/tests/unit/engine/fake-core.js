@@ -69,6 +69,8 @@ const refused = (message) => ({
  * @param {number} [options.refined_levels]  of a refinement after the front, of which each level has four times as many
  *   particles
  * @param {number} [options.fitSlices]  of the search for a box
+ * @param {number} [options.openSlices]  of opening an image
+ * @param {number} [options.makeSlices]  of making the field of a file
  */
 export function fakeCore({
   particles = 1000,
@@ -78,8 +80,13 @@ export function fakeCore({
   usPerSlice = 50,
   refined_levels = 0,
   fitSlices = 0,
+  openSlices = 0,
+  makeSlices = 0,
 } = {}) {
   let fitted = 0;
+  /** Bytes of the file that was begun, and what is left of opening it. */
+  let [added, slicesLeft] = [0, 0];
+  let making = { wanted: '', left: 0 };
   const clock = { ms: 0 };
   const calls = /** @type {string[]} */ ([]);
   let count = 0;
@@ -164,25 +171,54 @@ export function fakeCore({
     },
     /** @param {string} name @returns {Answer<ImagePromise, FieldFault>} */
     image_promise: (name) =>
-      name.endsWith('.bad') ? refused('no image') : { ok: true, size: [2, 2, 2], voxel_type: 'uint8', memory: 72 },
-    /** @param {string} name @param {Uint8Array} bytes @returns {Answer<ImageFacts, FieldFault>} */
-    open_image(name, bytes) {
-      calls.push(`open_image ${name} ${bytes.length}`);
-      return { ok: true, ...facts };
+      name.endsWith('.bad')
+        ? refused('no image')
+        : { ok: true, size: [2, 2, 2], voxel_type: 'uint8', memory: 72, bytes: 8 },
+    begin_file() {
+      added = 0;
     },
-    /** @returns {Answer<ImageFacts, FieldFault>} */
-    open_voxels: () => ({ ok: true, ...facts }),
+    /** @param {number} step */
+    keep_one_in(step) {
+      calls.push(`keep_one_in ${step}`);
+    },
+    /** @param {Uint8Array} bytes */
+    add_bytes(bytes) {
+      added += bytes.length;
+    },
+    /** @param {string} name */
+    open_image(name) {
+      calls.push(`open_image ${name} ${added}`);
+      slicesLeft = openSlices;
+    },
+    /** @param {number} budget @returns {number | Answer<ImageFacts, FieldFault>} */
+    open_step(budget) {
+      slicesLeft -= budget;
+      return slicesLeft > 0 ? 1 - slicesLeft / openSlices : { ok: true, ...facts };
+    },
+    open_voxels: () => null,
+    /** @param {Partial<FieldRequest>} request @param {number} budget */
+    make_opened({ parameters = {} }, budget) {
+      const wanted = JSON.stringify(parameters);
+      if (wanted !== making.wanted) {
+        calls.push(`make ${wanted}`);
+        making = { wanted, left: makeSlices };
+      }
+      making.left -= budget;
+      return making.left > 0 ? 1 - making.left / makeSlices : 1;
+    },
     /** @param {string} name @param {Uint8Array} bytes @returns {FieldFault | null} */
     open_mesh(name, bytes) {
       calls.push(`open_mesh ${name} ${bytes.length}`);
       return name.startsWith('flat') ? { ...refused('a sheet').error, kind: 'no_solid' } : null;
     },
+    section: () => new Float32Array(0),
     open_faces: () => null,
     /** @returns {any} */
     compare: () => null,
     close_opened: () => {},
     /** @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
     set_opened({ parameters = {} }) {
+      making.wanted = '';
       calls.push(`set_opened ${JSON.stringify(parameters)}`);
       return field('', { min: [-1, -1, -1], max: [1, 1, 1] });
     },

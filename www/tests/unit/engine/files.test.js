@@ -12,6 +12,8 @@ import { changeOf, facesOf, madeOf, mendedOf } from '../../../src/ui/field/mesh-
 import { fakeCore } from './fake-core.js';
 
 const ROOM = 1e9;
+/** Without a clock and with an immediate pause. */
+const TIME = { nowMs: () => 0, pause: () => Promise.resolve() };
 
 /** @param {string} name @param {string} [text] */
 const imageOf = (name, text = 'voxels') => ({
@@ -31,27 +33,53 @@ describe('a file of an image', () => {
     /** @type {[string, number][]} */
     const told = [];
     const tell = (/** @type {string} */ label, /** @type {number} */ share) => void told.push([label, share]);
-    const opened = await openGiven(core, imageOf('a.nii'), { tell, isOver: () => false, mostBytes: ROOM });
+    const opened = await openGiven(core, imageOf('a.nii'), { ...TIME, tell, isOver: () => false, mostBytes: ROOM });
     expect(opened).toMatchObject({ ok: true, facts: { otsu: 3 } });
     expect(core.calls).toEqual(['open_image a.nii 6']);
     expect(told[1]).toEqual(['Reading 2 × 2 × 2 voxels of uint8, about 1 MB of memory', 0]);
-    expect(told.at(-1)?.[1]).toBeGreaterThan(0.5);
+    expect(told.at(-1)?.[1]).toBe(0.5);
   });
 
   test('is refused by its header, and by its memory, before it is read', async () => {
     const core = coreOf(fakeCore());
-    const env = { tell: () => {}, isOver: () => false, mostBytes: ROOM };
+    const env = { ...TIME, tell: () => {}, isOver: () => false, mostBytes: ROOM };
     expect(await openGiven(core, imageOf('a.bad'), env)).toEqual({ ok: false, kind: 'image', message: 'no image' });
     const large = await openGiven(core, imageOf('a.nii'), { ...env, mostBytes: 71 });
+    // 8 bytes are read, and an eighth of the voxels is left.
+    expect(large).toMatchObject({ step: 2 });
+    expect(await openGiven(core, { ...imageOf('a.nii'), step: 2 }, { ...env, mostBytes: 16 })).toMatchObject({
+      ok: false,
+      step: 3,
+    });
+    expect(core.calls).toEqual([]);
+    expect(await openGiven(core, { ...imageOf('a.nii'), step: 3 }, { ...env, mostBytes: 16 })).toMatchObject({
+      ok: true,
+    });
+    expect(core.calls.splice(0)).toEqual(['keep_one_in 3', 'open_image a.nii 6']);
     expect(large).toMatchObject({ ok: false, message: expect.stringContaining('2 × 2 × 2 voxels takes about 1 MB') });
     expect(core.calls).toEqual([]);
   });
 
   test('is given up without reaching the core', async () => {
     const core = coreOf(fakeCore());
-    const env = { tell: () => {}, isOver: () => true, mostBytes: ROOM };
+    const env = { ...TIME, tell: () => {}, isOver: () => true, mostBytes: ROOM };
     expect(await openGiven(core, imageOf('a.nii'), env)).toBe(null);
     expect(core.calls).toEqual([]);
+  });
+
+  test('is opened in slices, and can be given up between two of them', async () => {
+    const core = coreOf(fakeCore({ openSlices: 5000 }));
+    /** @type {number[]} */
+    const shares = [];
+    const tell = (/** @type {string} */ _, /** @type {number} */ share) => void shares.push(share);
+    const env = { ...TIME, tell, isOver: () => false, mostBytes: ROOM };
+    expect(await openGiven(core, imageOf('a.nii'), env)).toMatchObject({ ok: true });
+    expect(shares.length).toBeGreaterThan(5);
+    expect(shares).toEqual([...shares].sort((a, b) => a - b));
+    const isOver = () => (shares.at(-1) ?? 0) > 0.6;
+    shares.length = 0;
+    expect(await openGiven(core, imageOf('a.nii'), { ...env, isOver })).toBe(null);
+    expect(shares.at(-1)).toBeLessThan(1);
   });
 
   test('is its header where files are dropped together', () => {
@@ -63,7 +91,7 @@ describe('a file of an image', () => {
 });
 
 describe('a file of a mesh', () => {
-  const env = { tell: () => {}, isOver: () => false, mostBytes: ROOM };
+  const env = { ...TIME, tell: () => {}, isOver: () => false, mostBytes: ROOM };
   const meshOf = (/** @type {string} */ name) => ({ ...imageOf(name, 'faces'), as: /** @type {const} */ ('mesh') });
 
   test('is opened as one, and refused by kind if it encloses nothing', async () => {
@@ -119,7 +147,7 @@ describe('a job of an image', () => {
 
   test('waits until the core has its image, also after another one', async () => {
     const core = coreOf(fakeCore());
-    const keeper = new FileKeeper(ROOM);
+    const keeper = new FileKeeper(ROOM, TIME);
     /** @type {any[]} */
     const posted = [];
     /** @type {() => void} */
@@ -128,8 +156,9 @@ describe('a job of an image', () => {
       (message) => void posted.push(message),
       () => 0,
       {
-        isReady: (ours, file) => keeper.isReady(ours, file, () => ready()),
+        isReady: (ours, { file, field }) => !file || keeper.isReady(ours, file, field, { whenReady: () => ready() }),
         setField: (ours, file, field) => keeper.setField(ours, file, field),
+        stop: () => keeper.stop(),
       },
     );
     for (const [id, name] of /** @type {[number, string][]} */ ([
@@ -153,14 +182,76 @@ describe('a job of an image', () => {
     expect(jobs.take(core)?.id).toBe(4);
   });
 
+  /** Jobs on a core whose fields take some slices, and what they post. @param {string} name */
+  async function slowly(name) {
+    const core = coreOf(fakeCore({ makeSlices: 5000 }));
+    const keeper = new FileKeeper(ROOM, TIME);
+    await keeper.open(core, imageOf(name));
+    /** @type {string[]} */
+    const posted = [];
+    let made = Promise.resolve();
+    const jobs = new Jobs(
+      (message) => void posted.push(`${message.type} ${'id' in message ? message.id : ''}`),
+      () => 0,
+      {
+        isReady(ours, { file, field }) {
+          let whenReady = () => {};
+          made = new Promise((done) => {
+            whenReady = done;
+          });
+          return !file || keeper.isReady(ours, file, field, { whenReady });
+        },
+        setField: (ours, file, field) => keeper.setField(ours, file, field),
+        stop: () => keeper.stop(),
+      },
+    );
+    return { core, jobs, posted, made: () => made };
+  }
+
+  test('has its field made in slices, while the control moves on', async () => {
+    const { core, jobs, posted, made } = await slowly('a.nii');
+    jobs.add({ ...job(1, 'a.nii'), kind: 'live' });
+    expect(jobs.take(core)).toBe(null);
+    const first = made();
+    // The next values of a drag wait for this one; the last of them waits longest.
+    jobs.add({ ...job(2, 'a.nii'), kind: 'live' });
+    jobs.add({ ...job(3, 'a.nii'), kind: 'live' });
+    expect(jobs.take(core)).toBe(null);
+    await first;
+    expect(jobs.take(core)?.id).toBe(1);
+    expect(core.calls.slice(1)).toEqual(['make {"iso":1}', 'set_opened {"iso":1}']);
+    expect(jobs.take(core)).toBe(null);
+    // What is left when the control is let go does not wait.
+    jobs.add(job(4, 'a.nii'));
+    expect(jobs.take(core)).toBe(null);
+    await made();
+    expect(jobs.take(core)?.id).toBe(4);
+    expect(posted).toEqual(['field 1', 'field 4']);
+  });
+
+  test('is dropped if it is stopped while its field is made', async () => {
+    const { core, jobs, posted, made } = await slowly('a.nii');
+    jobs.add(job(1, 'a.nii'));
+    expect(jobs.take(core)).toBe(null);
+    jobs.stop();
+    await made();
+    expect(jobs.take(core)).toBe(null);
+    expect(posted).toEqual(['dropped 1']);
+    expect(core.calls.at(-1)).toBe('make {"iso":1}');
+    jobs.add(job(2, 'a.nii'));
+    expect(jobs.take(core)).toBe(null);
+    await made();
+    expect(jobs.take(core)?.id).toBe(2);
+  });
+
   test('is refused if its file is none any more', async () => {
     const core = coreOf(fakeCore());
-    const keeper = new FileKeeper(ROOM);
+    const keeper = new FileKeeper(ROOM, TIME);
     const image = imageOf('a.bad');
     await new Promise((done) => {
-      expect(keeper.isReady(core, image, done)).toBe(false);
+      expect(keeper.isReady(core, image, {}, { whenReady: done })).toBe(false);
     });
-    expect(keeper.isReady(core, image, () => {})).toBe(true);
+    expect(keeper.isReady(core, image, {}, { whenReady: () => {} })).toBe(true);
     expect(keeper.setField(core, image, {})).toMatchObject({
       ok: false,
       error: { kind: 'image', message: 'no image' },
@@ -175,7 +266,7 @@ test('the computed images are the same every time', async () => {
       return createHash('sha256').update(bytes).digest('hex').slice(0, 16);
     }),
   );
-  expect(sums).toEqual(['beb58918ec473f19', '40841137e17ab6c3', '8e077dfbe0296c64']);
+  expect(sums).toEqual(['beb58918ec473f19', '40841137e17ab6c3', '8e077dfbe0296c64', '99b531eb653260f4']);
 });
 
 describe('an image is described', () => {

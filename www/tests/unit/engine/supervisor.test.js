@@ -70,7 +70,7 @@ afterEach(() => vi.useRealTimers());
 describe('the supervisor', () => {
   test('lets a worker that filters an image be silent for a minute', () => {
     busy();
-    workers[0].say({ type: 'filtering' });
+    workers[0].say({ type: 'opening' });
     vi.advanceTimersByTime(59_000);
     expect(workers).toHaveLength(1);
     // After the next word it is that of any other work again.

@@ -5,6 +5,7 @@ import { mountMarks } from './layer.js';
 import { createMeasureCard, measureMark } from './measure.js';
 import { createPinCard, pinMark } from './pins.js';
 import { planeMark } from './plane.js';
+import { sliceMark } from './slice.js';
 import { spotMark } from './spot.js';
 
 /**
@@ -19,6 +20,7 @@ import { spotMark } from './spot.js';
  */
 export function mountAllMarks(engine, { stage, host, view, pins }) {
   mountMarks(stage, engine, [
+    sliceMark(engine),
     axesMark(engine),
     boxMark(engine, stage),
     planeMark(engine, stage),
