@@ -93,7 +93,8 @@ class Case:
 def ours(case):
     with tempfile.TemporaryDirectory() as folder:
         image, mesh = (str(pathlib.Path(folder) / name) for name in ("image.npy", "mesh.ply"))
-        np.save(image, case.voxels)
+        # The first axis changes fastest, as that of --voxel-size does.
+        np.save(image, np.asfortranarray(case.voxels))
         command = [PROGRAM, "sample", "--image", image, "--count", str(case.count), "--mesh", mesh]
         command += ["--voxel-size", "x".join(map(str, case.spacing)), "--method", "refined"]
         command += ["--label", "1"] if case.kind == "labels" else ["--iso", str(case.iso)]
