@@ -77,7 +77,7 @@ const SWEEPS: [Sweep; 12] = [
     sweep("waves roll", "z-0.3*sin(3*x+q)*cos(3*y)", [0.0, TAU], 1.5),
 ];
 
-fn finish(run: &mut Run<Formula>) {
+fn finish(run: &mut Run<'_, Formula>) {
     while run.step(u32::MAX).stop_reason.is_none() {}
 }
 
@@ -138,7 +138,7 @@ struct Compared {
 }
 
 impl Compared {
-    fn of(run: &mut Run<Formula>) -> Self {
+    fn of(run: &mut Run<'_, Formula>) -> Self {
         let report = run.report();
         Self {
             count: report.count,

@@ -61,24 +61,24 @@ impl Job {
         job
     }
 
-    fn run(&self) -> Run<Formula> {
+    fn run(&self) -> Run<'static, Formula> {
         finished(self.field.clone(), &self.settings.in_box(self.bounds))
     }
 }
 
 /// A run to its end.
-fn finished<F: Field>(field: F, settings: &Settings) -> Run<F> {
+fn finished<'f, F: Field + 'f>(field: F, settings: &Settings) -> Run<'f, F> {
     let mut run = Run::start(field, settings).expect("valid settings");
     finish(&mut run);
     run
 }
 
 /// Radius of a run that has ended.
-fn radius<F: Field>(run: &Run<F>) -> f64 {
+fn radius<'f, F: Field + 'f>(run: &Run<'f, F>) -> f64 {
     run.progress().expect("it has ended").radius
 }
 
-fn finish<F: Field>(run: &mut Run<F>) {
+fn finish<'f, F: Field + 'f>(run: &mut Run<'f, F>) {
     let reason = loop {
         if let Some(reason) = run.step(65_536).stop_reason {
             break reason;

@@ -5,8 +5,8 @@
 //! owner does as many slices as there is time for, and cancels the computation by dropping it. The
 //! result does not depend on how slices were grouped.
 //!
-//! A method of the sampler is such a function, too. It works on what the sampler has, with a field
-//! that comes anew with every step: see its desk.
+//! A method of the sampler is such a function, too. It pauses where a budget is used up, and hands
+//! over what it has made so far: see its pace.
 
 #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
 use rayon::prelude::*;

@@ -5,9 +5,10 @@
 #[macro_use]
 mod settings;
 
-use marching_particles::field::gallery;
+use marching_particles::field::{Field, gallery};
 use marching_particles::sampler::{Creases, Method, Sampler, Sampling, Settings, SettingsError, SizeMode};
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The system's allocator, which counts the bytes in use and their peak.
@@ -68,7 +69,7 @@ const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;
 /// Number of particles of a run, and its peak memory in bytes.
 fn peak_of(settings: Settings) -> (usize, usize) {
     let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
-    let field = surface.field();
+    let field: Arc<dyn Field> = Arc::new(surface.field());
     let settings = settings!(max_particles: 4_000_000; ..settings);
     let before = USED.load(Ordering::Relaxed);
     PEAK.store(before, Ordering::Relaxed);
@@ -77,14 +78,14 @@ fn peak_of(settings: Settings) -> (usize, usize) {
     sampler
         .begin(&field, glam::DVec3::ZERO, &surface.bounds, &settings, smooth)
         .expect("room for the particles");
-    while sampler.step(&field, 65_536).stop_reason.is_none() {}
+    while sampler.step(65_536).stop_reason.is_none() {}
     (sampler.particles().len(), PEAK.load(Ordering::Relaxed) - before)
 }
 
 /// Holds the memory that a run is expected to take to what it does take, `bytes` per particle.
 fn assert_expected(settings: Settings, bytes: f64) {
     let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
-    let field = surface.field();
+    let field: Arc<dyn Field> = Arc::new(surface.field());
     let settings = settings!(size_mode: SizeMode::Count, count: 40_000; ..settings);
     for (limit, is_refused) in [(1.0 - ESTIMATE, true), (1.0 + ESTIMATE, false)] {
         let mut sampler = Sampler::default();

@@ -260,7 +260,11 @@ impl Job {
 const UNITS: u32 = 500;
 
 /// The fast sampler at its end. `each` is told the phase of every step.
-fn sampled(surface: &Surface, settings: &Settings, mut each: impl FnMut(Phase)) -> Run<Box<dyn Field>> {
+fn sampled(
+    surface: &Surface,
+    settings: &Settings,
+    mut each: impl FnMut(Phase),
+) -> Run<'static, Box<dyn Field>> {
     let mut run = Run::start(surface.field(), &settings.in_box(surface.bounds)).expect("valid settings");
     loop {
         let progress = run.step(4_096);

@@ -385,7 +385,7 @@ fn extension<'a>(arguments: &'a SampleArguments, path: &'a Path) -> Cow<'a, str>
 }
 
 /// Runs to the end and adds the times of the phases to `seconds`.
-fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) {
+fn step_to_end(run: &mut Run<'_, Source>, seconds: &mut Seconds, bar: &ProgressBar) {
     /// Steps of [`BUDGET`] units between two updates of the progress bar: about 6 ms.
     const UPDATE: u32 = 64;
     let mut phase = Phase::Seeding;
@@ -425,7 +425,7 @@ fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) 
 
 /// Triangulates the particles of a run and adds the time to `seconds`. Returns the volume of the
 /// mesh, if it is closed.
-fn join(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) -> Option<f64> {
+fn join(run: &mut Run<'_, Source>, seconds: &mut Seconds, bar: &ProgressBar) -> Option<f64> {
     bar.set_message("joining the particles");
     timed(&mut seconds.mesh, || {
         loop {

@@ -89,7 +89,7 @@ impl Wall {
 }
 
 /// The longest side of the box around the chosen bodies of a run's mesh, once it is triangulated.
-fn longest_side(run: &Run<Source>, kept: Bodies) -> Option<f64> {
+fn longest_side(run: &Run<'_, Source>, kept: Bodies) -> Option<f64> {
     let bodies = run.mesh()?.bodies(run.particles());
     Some(kept.size(&bodies).max_element())
 }

@@ -31,7 +31,7 @@ pub(super) struct Ends {
     pub(super) others: Option<DVec3>,
 }
 
-impl RunState {
+impl RunState<'_> {
     /// Where the triangles of the particles end, from a selection of the places. Near the box its
     /// faces hide such an end; there, particles with a child that found no surface show it.
     pub(super) fn ends(&self, field: &dyn Field) -> Ends {

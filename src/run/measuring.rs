@@ -37,12 +37,12 @@ pub enum Measured {
 
 /// The measurements of a run.
 #[derive(Default)]
-pub(super) struct Measuring {
+pub(super) struct Measuring<'f> {
     /// The particles after the front, until they are measured.
     pub(super) front: Option<Arc<Particles>>,
     pub(super) front_figures: Option<Figures>,
-    /// The measurement of a copy of the field that is under way.
-    pub(super) work: Option<Estimated<'static, MeasuringResult>>,
+    /// The measurement under way.
+    pub(super) work: Option<Estimated<'f, MeasuringResult>>,
     /// The figures and columns of the last measurement; empty before the first.
     pub(super) measured: quality::Measurements,
     /// Number of particles that face another sheet; none if the present particles have not been
@@ -52,7 +52,7 @@ pub(super) struct Measuring {
     pub(super) sheets: Option<Arc<Sheets>>,
 }
 
-impl Measuring {
+impl Measuring<'_> {
     /// Keeps the first `count` particles as the front's, if none are kept.
     pub(super) fn keep_front(&mut self, particles: &Particles, count: usize) {
         if self.front.is_none() && count <= MAX_KEPT {
@@ -141,7 +141,7 @@ pub(super) struct MeasuringInput {
 // of field.
 impl MeasuringInput {
     /// The measurement in slices, of a field in the frame of the particles.
-    pub(super) fn work(self, field: Arc<dyn Field>, frame: Frame) -> Estimated<'static, MeasuringResult> {
+    pub(super) fn work<'f>(self, field: Arc<dyn Field + 'f>, frame: Frame) -> Estimated<'f, MeasuringResult> {
         let expected = expected_slices(self.front.as_ref(), &self.now);
         Estimated::new(Box::pin(async move { self.in_slices(&field, frame).await }), expected)
     }

@@ -160,7 +160,7 @@ impl MeshAnswer {
     }
 }
 
-impl<F: Field> Run<F> {
+impl<'f, F: Field + 'f> Run<'f, F> {
     /// Joins the particles to a mesh, with up to `budget` slices of the work, some 10 to 50
     /// microseconds each; returns its counts and sizes once it is complete. The mesh of a refined
     /// run is taken as it is. Call it when the run has ended. The mesh stays until the particles
@@ -195,7 +195,7 @@ impl<F: Field> Run<F> {
     }
 }
 
-impl RunState {
+impl RunState<'_> {
     /// [`Run::join`].
     pub(super) fn join(&mut self, field: &dyn Field, budget: u32) -> Option<MeshAnswer> {
         if let MeshState::None = self.meshing.state {

@@ -41,6 +41,7 @@ use measuring::Measuring;
 use mesh::Meshing;
 use plan::Plan;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Bytes of a particle that is kept after the front: its position, normal and radius.
 const KEPT_BYTES: usize = 12 + 12 + 4;
@@ -134,13 +135,13 @@ enum Known {
 
 /// The state of a run, without its field. Every call lends it the field, whatever its type, so that
 /// this code is compiled only once.
-struct RunState {
+struct RunState<'f> {
     field: FieldState,
     /// The clip box, in the coordinates of the field.
     bounds: Bounds,
     /// Whether the surface is bounded, if its box was fitted; none if the box was given.
     reach: Option<Reach>,
-    sampler: Sampler,
+    sampler: Sampler<'f>,
     known: Known,
     /// The creases of the surface in the box, if they were found before the start.
     creases: Option<FoundCreases>,
@@ -155,7 +156,7 @@ struct RunState {
     last: Option<Progress>,
     /// The plan that fractions refer to.
     plan: Plan,
-    measuring: Measuring,
+    measuring: Measuring<'f>,
     meshing: Meshing,
 }
 
@@ -170,8 +171,9 @@ struct FieldState {
 
 /// The sampling of one surface, in steps.
 ///
-/// A run owns its field, or borrows it where `F` is a reference. A budget is a count of work, never
-/// a time: however a run is cut into steps, its particles are the same to the last bit.
+/// A run owns its field, or borrows it for `'f` where `F` is a reference: the run of a field that
+/// borrows nothing is a `Run<'static, F>`. A budget is a count of work, never a time: however a run
+/// is cut into steps, its particles are the same to the last bit.
 ///
 /// ```
 /// use marching_particles::{Formula, Run, Settings};
@@ -187,13 +189,18 @@ struct FieldState {
 /// assert_eq!(sample.report().proof.components, 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct Run<F> {
+pub struct Run<'f, F> {
     /// The field, as it was given.
-    field: F,
-    state: RunState,
+    field: Arc<F>,
+    state: RunState<'f>,
 }
 
-impl<F> Debug for Run<F> {
+/// A field of whatever type, shared with the methods that evaluate it.
+fn shared<'f, F: Field + 'f>(field: &Arc<F>) -> Arc<dyn Field + 'f> {
+    Arc::<F>::clone(field)
+}
+
+impl<F> Debug for Run<'_, F> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.debug_struct("Run")
             .field("bounds", &self.state.bounds)
@@ -202,7 +209,7 @@ impl<F> Debug for Run<F> {
     }
 }
 
-impl<F: Field> Run<F> {
+impl<'f, F: Field + 'f> Run<'f, F> {
     /// Starts a run on the surface of `field`, in the box of the settings or in one that fits the
     /// surface.
     ///
@@ -220,20 +227,20 @@ impl<F: Field> Run<F> {
     {
         let SpacedSettings { settings, spacing } = SpacedSettings::from(settings);
         settings.validate()?;
-        let field = field.into_field();
-        let state = RunState::started(&field, &settings, spacing)?;
+        let field = Arc::new(field.into_field());
+        let state = RunState::started(&shared(&field), &settings, spacing)?;
         Ok(Self { field, state })
     }
 
     /// A run that has not begun.
     pub(crate) fn idle(field: F, bounds: Bounds) -> Self {
-        Self { state: RunState::new(&field, bounds), field }
+        Self { state: RunState::new(&field, bounds), field: Arc::new(field) }
     }
 
     /// Begins a run in the present box; the survey is kept if field and box are those of the last
     /// start.
     pub(crate) fn begin(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
-        self.state.begin(&self.field, settings)
+        self.state.begin(&shared(&self.field), settings)
     }
 
     /// Sets the spacing by a function for the next start.
@@ -314,8 +321,10 @@ impl<F: Field> Run<F> {
     /// ```
     pub fn follow(&mut self, field: F) -> Result<(), FollowError> {
         let next = self.state.field.followed_by(&field);
-        let (given, known) =
-            (core::mem::replace(&mut self.field, field), core::mem::replace(&mut self.state.field, next));
+        let (given, known) = (
+            core::mem::replace(&mut self.field, Arc::new(field)),
+            core::mem::replace(&mut self.state.field, next),
+        );
         let followed = self.follow_field(false);
         if followed.is_err() {
             (self.field, self.state.field) = (given, known);
@@ -327,7 +336,7 @@ impl<F: Field> Run<F> {
     /// since the last step. If `is_closed`, particles are neither added nor removed, except those
     /// that do not reach the surface.
     pub(crate) fn follow_field(&mut self, is_closed: bool) -> Result<(), FollowError> {
-        self.state.follow(&self.field, is_closed)
+        self.state.follow(&shared(&self.field), is_closed)
     }
 
     /// Requests more relaxation steps on the particles of a finished run; [`Run::step`] does them.
@@ -335,7 +344,7 @@ impl<F: Field> Run<F> {
     /// are set by its [settings](Settings::relax_steps).
     #[must_use]
     pub fn relax(&mut self, steps: u32) -> bool {
-        self.state.relax(&self.field, steps)
+        self.state.relax(&shared(&self.field), steps)
     }
 
     /// Ends the run where it is; the particles placed so far stay.
@@ -446,9 +455,9 @@ impl<F: Field> Run<F> {
         self.state.evaluator(&self.field)
     }
 
-    /// Ends the run and returns the field.
+    /// Ends the run and returns the field, which a [method under way](Run::step) shared.
     #[must_use]
-    pub fn into_field(self) -> F {
+    pub fn into_field(self) -> Arc<F> {
         self.field
     }
 
@@ -484,14 +493,14 @@ impl<F: Field> Run<F> {
     /// The sampler, for facts that the report omits.
     #[doc(hidden)]
     #[must_use]
-    pub fn sampler(&self) -> &Sampler {
+    pub fn sampler(&self) -> &Sampler<'f> {
         &self.state.sampler
     }
 
     /// Ends the run and returns its sampler, with the method where it stopped.
     #[doc(hidden)]
     #[must_use]
-    pub fn into_sampler(self) -> Sampler {
+    pub fn into_sampler(self) -> Sampler<'f> {
         self.state.sampler
     }
 
@@ -504,7 +513,7 @@ impl<F: Field> Run<F> {
     /// the same surface: the survey remains valid.
     pub(crate) fn set_field(&mut self, field: F, is_same: bool) {
         self.state.leave_field(&self.field, &field, is_same);
-        self.field = field;
+        self.field = Arc::new(field);
     }
 
     /// Whether the next start needs no search for the creases of the surface.
@@ -513,11 +522,8 @@ impl<F: Field> Run<F> {
     }
 
     /// Finds the creases of the surface in the box, in slices, for [`Run::know_creases`].
-    pub(crate) fn find_creases(&self) -> Work<'static, FoundCreases>
-    where
-        F: Clone + 'static,
-    {
-        let (field, origin) = (self.field.clone(), self.bounds().local_origin());
+    pub(crate) fn find_creases(&self) -> Work<'f, FoundCreases> {
+        let (field, origin) = (shared(&self.field), self.bounds().local_origin());
         let bounds = self.bounds().relative_to(origin);
         Box::pin(async move { sampler::find_creases(&field, origin, &bounds).await })
     }

@@ -4,7 +4,7 @@
 use super::measuring::{
     Measured, Measuring, MeasuringInput, MeasuringResult, expected_slices, measure, measured_columns,
 };
-use super::{Run, RunState, Warning, check};
+use super::{Run, RunState, Warning, check, shared};
 use crate::extent::Reach;
 use crate::field::Field;
 use crate::math::Forest;
@@ -241,7 +241,7 @@ impl Reporting<'_> {
     }
 }
 
-impl<F: Field> Run<F> {
+impl<'f, F: Field + 'f> Run<'f, F> {
     /// Measures the particles and reports. Call it when the run has ended. Measurements made since
     /// the particles last changed are not repeated.
     pub fn report(&mut self) -> Report {
@@ -261,11 +261,8 @@ impl<F: Field> Run<F> {
     /// [`Run::report_with`] in slices, up to `budget` of them, with the run free between them;
     /// returns the report once it is complete. Any other change in between aborts the measurement,
     /// and the next call starts again.
-    pub(crate) fn measure_copy(&mut self, measured: Measured, budget: u32) -> Option<Report>
-    where
-        F: Clone + 'static,
-    {
-        self.state.measure_copy(&self.field, || Arc::new(self.field.clone()), measured, budget)
+    pub(crate) fn measure_freely(&mut self, measured: Measured, budget: u32) -> Option<Report> {
+        self.state.measure_freely(&shared(&self.field), measured, budget)
     }
 
     /// Measures particles that something else has placed on the surface, one row each, and keeps
@@ -276,7 +273,7 @@ impl<F: Field> Run<F> {
     }
 }
 
-impl RunState {
+impl<'f> RunState<'f> {
     /// The particles of the front that have to be measured, if wanted.
     fn wanted_front(&self, measured: Measured) -> Option<Arc<Particles>> {
         self.measuring.open_front().filter(|_| measured == Measured::FrontToo)
@@ -326,21 +323,17 @@ impl RunState {
         Reporting { work: Estimated::new(work, expected), before, share }
     }
 
-    /// [`Run::measure_copy`]; `copy` makes a copy of the field.
-    fn measure_copy(
+    /// [`Run::measure_freely`].
+    fn measure_freely(
         &mut self,
-        field: &dyn Field,
-        copy: impl FnOnce() -> Arc<dyn Field>,
+        field: &Arc<dyn Field + 'f>,
         measured: Measured,
         budget: u32,
     ) -> Option<Report> {
         if self.is_due(measured) {
             let begun = self.measuring.work.take();
             let work = begun.unwrap_or_else(|| {
-                let field = match &self.field.pieces {
-                    Some(known) => known.of_shared(copy),
-                    None => copy(),
-                };
+                let field = self.field.shared(field);
                 self.measuring_input(measured).work(field, self.sampler.frame())
             });
             let measured = self.measuring.work.insert(work).advance(budget)?;

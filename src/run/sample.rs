@@ -70,7 +70,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    pub(super) fn new(run: RunState, report: Report) -> Self {
+    pub(super) fn new(run: RunState<'_>, report: Report) -> Self {
         Self {
             bounds: run.bounds,
             known: run.sampler.triangles().to_vec(),

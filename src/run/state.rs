@@ -15,6 +15,7 @@ use crate::sampler::{
 };
 use crate::slices;
 use glam::DVec3;
+use std::sync::Arc;
 
 impl FieldState {
     fn new(given: &dyn Field) -> Self {
@@ -24,6 +25,11 @@ impl FieldState {
     /// Calls of its functions by this run.
     pub(super) fn calls(&self, given: &dyn Field) -> Option<u64> {
         given.calls().map(|calls| calls - self.calls)
+    }
+
+    /// [`FieldState::function`], shared with the sampler.
+    pub(super) fn shared<'f>(&self, given: &Arc<dyn Field + 'f>) -> Arc<dyn Field + 'f> {
+        KnownPieces::of_shared(self.pieces.as_ref(), given)
     }
 
     /// The sampled field.
@@ -49,7 +55,7 @@ fn failure_of(field: &dyn Field) -> Result<(), Error> {
     field.failure().map_or(Ok(()), |error| Err(Error::Field(error)))
 }
 
-impl RunState {
+impl<'f> RunState<'f> {
     /// A run that has not begun.
     pub(super) fn new(field: &dyn Field, bounds: Bounds) -> Self {
         Self {
@@ -72,7 +78,7 @@ impl RunState {
 
     /// [`Run::start`](super::Run::start), by settings that are valid.
     pub(super) fn started(
-        field: &dyn Field,
+        field: &Arc<dyn Field + 'f>,
         settings: &Settings,
         spacing: Option<Spacing>,
     ) -> Result<Self, Error> {
@@ -92,7 +98,11 @@ impl RunState {
     }
 
     /// [`Run::begin`](super::Run::begin).
-    pub(super) fn begin(&mut self, field: &dyn Field, settings: &Settings) -> Result<Start, SettingsError> {
+    pub(super) fn begin(
+        &mut self,
+        field: &Arc<dyn Field + 'f>,
+        settings: &Settings,
+    ) -> Result<Start, SettingsError> {
         settings.validate()?;
         self.bounds.check()?;
         let mut settings = settings.in_shares_of(&self.bounds)?;
@@ -119,7 +129,7 @@ impl RunState {
             self.field.pieces = known;
             creases
         });
-        let start = self.sampler.begin(&self.field.function(field), origin, &bounds, settings, creases)?;
+        let start = self.sampler.begin(&self.field.shared(field), origin, &bounds, settings, creases)?;
         self.known = Known::Survey;
         self.last = None;
         self.measuring = Measuring::default();
@@ -144,7 +154,7 @@ impl RunState {
 
     /// [`Run::step`](super::Run::step).
     pub(super) fn step(&mut self, field: &dyn Field, budget: u32) -> Progress {
-        let progress = self.sampler.step(&self.field.function(field), budget);
+        let progress = self.sampler.step(budget);
         let has_failed = field.failure().is_some()
             || self.spacing.as_ref().is_some_and(|spacing| spacing.failure().is_some());
         if has_failed && progress.stop_reason.is_none() {
@@ -157,9 +167,9 @@ impl RunState {
     }
 
     /// [`Run::follow_field`](super::Run::follow_field).
-    pub(super) fn follow(&mut self, field: &dyn Field, is_closed: bool) -> Result<(), FollowError> {
+    pub(super) fn follow(&mut self, field: &Arc<dyn Field + 'f>, is_closed: bool) -> Result<(), FollowError> {
         let bounds = self.local_bounds();
-        self.sampler.follow(&self.field.function(field), &bounds, is_closed)?;
+        self.sampler.follow(&self.field.shared(field), &bounds, is_closed)?;
         self.known = Known::Particles;
         self.creases = None;
         self.remember(field, self.sampler.progress());
@@ -167,8 +177,8 @@ impl RunState {
     }
 
     /// [`Run::relax`](super::Run::relax).
-    pub(super) fn relax(&mut self, field: &dyn Field, steps: u32) -> bool {
-        let can_relax = self.known != Known::Nothing && self.sampler.relax(steps);
+    pub(super) fn relax(&mut self, field: &Arc<dyn Field + 'f>, steps: u32) -> bool {
+        let can_relax = self.known != Known::Nothing && self.sampler.relax(&self.field.shared(field), steps);
         if can_relax {
             let progress = self.sampler.progress();
             self.remember(field, progress);
@@ -180,7 +190,7 @@ impl RunState {
     pub(super) fn cancel(&mut self, field: &dyn Field) -> Progress {
         self.sampler.cancel();
         // Marks the particles next to singular points.
-        let progress = self.sampler.step(&self.field.function(field), 0);
+        let progress = self.sampler.step(0);
         self.remember(field, progress)
     }
 

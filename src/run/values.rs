@@ -193,7 +193,7 @@ impl Sample {
     }
 }
 
-impl<F: Field> Run<F> {
+impl<'f, F: Field + 'f> Run<'f, F> {
     /// [`Sample::add_value`] at the particles of a complete run, with the mesh joined if the value
     /// [needs](Value::needs_mesh) it. It replaces a column of the same name. A later report drops
     /// the columns.

@@ -330,7 +330,7 @@ impl Warning {
     }
 }
 
-impl RunState {
+impl RunState<'_> {
     /// Returns the warnings known at the start, with this forecast and at most `limit` particles.
     pub(super) fn known_at_start(&mut self, field: &dyn Field, start: Forecast, limit: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();

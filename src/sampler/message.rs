@@ -7,7 +7,7 @@ use crate::sampler::discovery::survey::Absence;
 use crate::sampler::settings::SizeMode;
 use glam::DVec3;
 
-impl Sampler {
+impl Sampler<'_> {
     /// A sentence for the user where the reason for the end needs one.
     pub(crate) fn message(&self) -> Option<String> {
         Some(match self.stop_reason? {
@@ -20,26 +20,26 @@ impl Sampler {
                 "Stopped at the limit of {} particles; raise the limit or the radius to cover the whole surface.",
                 self.settings.max_particles
             ),
-            StopReason::NoSurface if self.survey.absence == Absence::Proven => {
+            StopReason::NoSurface if self.surface.survey.absence == Absence::Proven => {
                 "f has no zero in this box (proven by interval arithmetic).".into()
             }
-            StopReason::NoSurface if self.survey.absence == Absence::Steps => format!(
+            StopReason::NoSurface if self.surface.survey.absence == Absence::Steps => format!(
                 "f takes only {} and jumps between them: give a signed function, which is negative inside, positive outside, \
                  and changes gradually, such as the distance from the surface.",
-                values_text(&self.survey.steps)
+                values_text(&self.surface.survey.steps)
             ),
-            StopReason::NoSurface if self.survey.absence == Absence::Bare => format!(
+            StopReason::NoSurface if self.surface.survey.absence == Absence::Bare => format!(
                 "No surface: f comes to zero, for example near {}, but only on a curve or at a point, beside which it keeps one sign. For a \
                  surface around it enter a number on the right side, such as {level}: f = {level} instead of f = 0.",
                 self.place(self.bare_place().unwrap_or_default()),
-                level = significant(self.survey.level),
+                level = significant(self.surface.survey.level),
             ),
             StopReason::NoSurface | StopReason::OneParticle
-                if !self.components.singular().is_empty() && (self.output.particles.is_empty() || self.survey.touches) =>
+                if !self.cover.components.singular().is_empty() && (self.cover.particles.is_empty() || self.surface.survey.touches) =>
             {
-                let middle = 0.5 * (self.bounds.lo() + self.bounds.hi());
+                let middle = 0.5 * (self.surface.bounds.lo() + self.surface.bounds.hi());
                 let distance = |p: &DVec3| (*p - middle).length_squared();
-                let points = self.components.singular().iter().map(|point| point.position);
+                let points = self.cover.components.singular().iter().map(|point| point.position);
                 let nearest = points.min_by(|a, b| distance(a).total_cmp(&distance(b)));
                 let near = self.place(nearest.unwrap_or_default());
                 format!(
@@ -49,7 +49,7 @@ impl Sampler {
                      a power, enter its base."
                 )
             }
-            StopReason::NoSurface if self.survey.absence == Absence::NotSeen => {
+            StopReason::NoSurface if self.surface.survey.absence == Absence::NotSeen => {
                 let (of_box, remedy) = if self.is_box_given {
                     ("this box", "Enlarge or move the box.")
                 } else {
@@ -58,13 +58,13 @@ impl Sampler {
                         "A surface that is small against that box, or beyond it, needs a box of its own.",
                     )
                 };
-                let nodes = match self.survey.defined {
+                let nodes = match self.surface.survey.defined {
                     1.0.. => "at every grid point".to_owned(),
                     share => format!("at every grid point at which it has a value, {} of all,", percent(share)),
                 };
                 format!("f keeps one sign {nodes} of {of_box}. {remedy}{}", self.undecided_place())
             }
-            StopReason::NoSurface if self.survey.absence == Absence::Limited => {
+            StopReason::NoSurface if self.surface.survey.absence == Absence::Limited => {
                 "Nothing of the surface is within its limits in this box: change the conditions in braces.".into()
             }
             StopReason::NoSurface => format!(
@@ -75,7 +75,7 @@ impl Sampler {
             StopReason::Constant => {
                 "f has the same value wherever it is defined in the box, so there is no surface to sample.".into()
             }
-            StopReason::Undefined if self.survey.absence == Absence::TooLarge => {
+            StopReason::Undefined if self.surface.survey.absence == Absence::TooLarge => {
                 "f is too large for double precision wherever it has a value in the box: enter it in a form with smaller \
                  numbers, such as its logarithm, or make the box smaller."
                     .into()
@@ -105,10 +105,10 @@ fn percent(share: f64) -> String {
     if share < 0.001 { "less than 0.1 %".to_owned() } else { format!("{:.1} %", 100.0 * share) }
 }
 
-impl Sampler {
+impl Sampler<'_> {
     /// A place in words, in the coordinates of the formula.
     fn place(&self, p: DVec3) -> String {
-        place_text((self.output.particles.origin + p).to_array(), self.bounds.diagonal())
+        place_text((self.cover.particles.origin + p).to_array(), self.surface.bounds.diagonal())
     }
 
     /// A sentence on the first cell that the search for components left undecided; empty if there

@@ -1,293 +1,216 @@
 //! The three methods, from top to bottom: a front with its relaxation or refinement, more steps of
-//! the relaxation, and particles that follow a moving surface. Each method of the [`Sampler`] named
-//! here is one step; [`Desk`] says how steps are done in slices.
+//! the relaxation, and particles that follow a moving surface. A method puts together stages of
+//! [`stages`](super::stages); [`Task`] says how they are done in slices.
 
-use super::Sampler;
-use super::desk::{Desk, Stopped};
-use super::phase::StopReason;
-use super::refine::{Components, Refinement, Refusal};
-use super::relaxation::{Grading, Sweep};
+use super::attempt::MOST_FRONTS;
+use super::count::Search;
+use super::cover::Cover;
+use super::discovery::singular;
+use super::discovery::survey::Absence;
+use super::pace::{SLICE, Stopped, Task};
+use super::phase::{Phase, StopReason};
+use super::refine::{CoarseFronts, Next, Refusal};
+use super::settings::Sampling;
+use super::stages::coarse::Refining;
+use super::stages::covering::cover_surface;
+use super::stages::following::follow_surface;
+use super::stages::refining::{Halt, refine};
+use super::stages::relaxing::relax;
+use crate::particles::OrientedPoint;
+use crate::slices::Work;
+use glam::Vec3;
 
-/// What follows after a front has covered the surface.
-pub(super) enum Verdict {
-    /// Another front, with other radii.
-    Again,
-    /// The relaxation.
-    Relax,
-    /// The refinement of the front, which is a coarse one.
-    Refine(Components),
-    /// The front is final, and the run ends for this reason.
-    Stands(StopReason),
+/// The paper's method (§4 and §5), or the refined one if coarse fronts are planned and none has to
+/// be given up.
+pub(super) fn sample<'t>(
+    task: &'t mut Task,
+    cover: &'t mut Cover,
+    refining: Option<Refining>,
+) -> Work<'t, StopReason> {
+    Box::pin(async move {
+        let reason = place(task, cover, refining).await;
+        ended(task, cover, reason)
+    })
 }
 
-/// The paper's method (§4 and §5), or the refined one: fronts cover the surface, until their number
-/// of particles is the wanted one, and are relaxed or refined.
-pub(super) async fn sample(desk: Desk) -> StopReason {
-    ended(&desk, place(&desk).await).await
-}
-
-async fn place(desk: &Desk) -> Result<StopReason, Stopped> {
-    let reason = loop {
-        desk.leaving(cover(desk), Sampler::leave_front).await?;
-        match desk.with_field(Sampler::judge_front).await? {
-            Verdict::Again => {}
-            Verdict::Refine(mut components) => {
-                let refined = refine(desk, &mut components);
-                let refusal = desk.leaving(refined, Sampler::leave_refinement).await?;
-                if desk.now(move |sampler| sampler.judge_refinement(components, refusal)).await? {
-                    break StopReason::Complete;
-                }
+async fn place(
+    task: &mut Task<'_>,
+    cover: &mut Cover,
+    refining: Option<Refining>,
+) -> Result<StopReason, Stopped> {
+    let reason = match refining {
+        None => front(task, cover).await?,
+        Some(refining) => match refined(task, cover, refining).await {
+            Ok(reason) => reason,
+            Err(Halt::Stopped) => return Err(Stopped),
+            Err(Halt::Refused(refusal)) => {
+                cover.refuse(task, refusal);
+                front(task, cover).await?
             }
-            Verdict::Relax => {
-                desk.now(Sampler::begin_relaxation).await?;
-                desk.turn().await?;
-                relax(desk).await?;
-                break desk.now(|sampler| sampler.reason_for_end()).await?;
-            }
-            Verdict::Stands(reason) => break reason,
-        }
+        },
     };
-    audit(desk).await?;
+    audit(task, cover).await?;
     Ok(reason)
 }
 
-/// Covers the surface with particles: from its creases and tips, from seeds of the survey, from
-/// witnesses of components that the survey has missed, and in the gaps that are left.
-async fn cover(desk: &Desk) -> Result<(), Stopped> {
-    let is_known = desk.now(Sampler::begin_attempt).await?;
-    if is_known {
-        // Over a component covered by an earlier front, one seed is enough.
-        if desk.until(|sampler, probe, _| Some(sampler.begin_at_known(probe))).await? {
-            grow(desk, true).await?;
+/// Fronts whose radius meets the wanted number of particles, and the relaxation of the last one.
+async fn front(task: &mut Task<'_>, cover: &mut Cover) -> Result<StopReason, Stopped> {
+    let mut search = Search::new(MOST_FRONTS);
+    loop {
+        let plan = cover.attempt.front(&task.settings, &task.surface.bounds);
+        cover_surface(task, cover, plan, None).await?;
+        if let Some(reason) = cover.why_empty(task) {
+            return Ok(reason);
         }
-    } else {
-        if desk.until(|sampler, probe, _| Some(sampler.begin_at_creases(probe))).await? {
-            grow(desk, false).await?;
-        }
-        while desk.until(Sampler::find_seed).await? {
-            grow(desk, false).await?;
-        }
-        if desk.now(Sampler::begin_search).await? {
-            desk.turn().await?;
-        }
-        while desk.until(Sampler::find_witness).await? {
-            grow(desk, true).await?;
+        let (count, is_capped) = (cover.particles.count(), cover.front.level().capped);
+        if !cover.attempt.is_corrected(&mut search, &task.settings, count, is_capped) {
+            break;
         }
     }
-    while desk.now(Sampler::begin_filling).await? {
-        desk.until(Sampler::fill).await?;
-        grow_levels(desk).await?;
+    let is_alone = cover.front.level().fates.added == 0 && cover.particles.twins.is_empty();
+    if is_alone && !cover.front.level().capped {
+        return Ok(StopReason::OneParticle);
     }
-    Ok(())
-}
-
-/// Grows a front from a seed, which `is_witness` where the search has found it.
-async fn grow(desk: &Desk, is_witness: bool) -> Result<(), Stopped> {
-    grow_levels(desk).await?;
-    desk.with_field(move |sampler, probe| sampler.end_front(probe, is_witness)).await
-}
-
-/// Lets a front grow level by level, until it has met itself, another one or the box everywhere
-/// (paper §4.2 to §4.4): parents predict children, these are projected onto the surface, and those
-/// that find room are the parents of the next level.
-async fn grow_levels(desk: &Desk) -> Result<(), Stopped> {
-    while !desk.now(|sampler| sampler.has_closed()).await? {
-        desk.until(Sampler::place_children).await?;
-        desk.until(Sampler::project_children).await?;
-        desk.until(Sampler::settle_children).await?;
+    if task.settings.relax_steps > 0 || task.settings.sampling == Sampling::Adaptive {
+        cover.begin_relaxation(task.surface, &task.settings);
+        task.turn(cover).await?;
+        relax(task, cover).await?;
     }
-    Ok(())
+    Ok(cover.reason_for_end())
 }
 
-/// Why the work on a mesh ends early.
-enum Halt {
-    Stopped,
-    Refused(Refusal),
-}
-
-impl From<Stopped> for Halt {
-    fn from(_: Stopped) -> Self {
-        Self::Stopped
-    }
-}
-
-impl From<Refusal> for Halt {
-    fn from(refusal: Refusal) -> Self {
-        Self::Refused(refusal)
-    }
-}
-
-/// Why a mesh was given up, if it was, once the work on it has ended.
-fn refusal(result: Result<(), Halt>) -> Result<Option<Refusal>, Stopped> {
-    match result {
-        Ok(()) => Ok(None),
-        Err(Halt::Refused(refusal)) => Ok(Some(refusal)),
-        Err(Halt::Stopped) => Err(Stopped),
-    }
-}
-
-/// Refines the components of a coarse front: orders its few particles, and keeps that order while
-/// each level multiplies their number by four. Each level is checked against f itself, since
-/// patches are refined by their own functions. Returns the reason if the front is refused.
-async fn refine(desk: &Desk, components: &mut Components) -> Result<Option<Refusal>, Stopped> {
-    refusal(make_levels(desk, components).await)
-}
-
-async fn make_levels(desk: &Desk, components: &mut Components) -> Result<(), Halt> {
-    let levels = components.most_halvings() + 1;
-    for to_come in (0..levels).rev() {
-        for (k, share) in components.at_level(to_come) {
-            desk.now(move |sampler| sampler.begin_level(levels, to_come, share)).await?;
-            let mesh = components.refinement(k);
-            if mesh.to_come() > to_come {
-                divide(desk, mesh).await?;
+/// Coarse fronts, of all components and then of each that may be coarser, until their refinement
+/// meets the wanted number of particles.
+async fn refined(task: &mut Task<'_>, cover: &mut Cover, mut refining: Refining) -> Result<StopReason, Halt> {
+    let mut coarse = CoarseFronts::default();
+    loop {
+        let plan = refining.front(&mut cover.attempt, &task.settings, &task.surface.bounds);
+        let known = coarse.known().map(|known| OrientedPoint::of(known, 0));
+        let is_first = known.is_none();
+        match cover_surface(task, cover, plan, known).await {
+            Ok(ladder) if is_first => refining.ladder = ladder,
+            Ok(_) => {}
+            Err(stopped) => {
+                if let Some(first) = coarse.end() {
+                    cover.particles = first;
+                    cover.drop_beyond(task);
+                }
+                return Err(stopped.into());
             }
-            make_passes(desk, mesh).await?;
-            let mut rings = mesh.begin_order();
-            let ordered =
-                desk.until_on(mesh, move |_, mesh, _, left| mesh.put_in_order(&mut rings, left)).await?;
-            components.end_level(k, ordered);
         }
-        let mut inspected = None;
-        desk.until_on(components, move |sampler, components, probe, left| {
-            if inspected.is_none() {
-                sampler.show_level(components, to_come, left);
+        if let Some(reason) = cover.why_empty(task) {
+            return Ok(reason);
+        }
+        let mut components = match cover.judge_coarse(task, &refining, &mut coarse) {
+            Ok(Next::Refine(components)) => components,
+            Ok(Next::Front(halvings)) => {
+                refining.halvings = halvings;
+                continue;
             }
-            sampler.inspect_level(inspected.get_or_insert(0), probe, left)
-        })
-        .await??;
+            Err(refusal) => {
+                coarse.end();
+                refining.refuse(refusal, &cover.attempt, !coarse.are_several)?;
+                continue;
+            }
+        };
+        match refine(task, cover, &refining, &mut components).await {
+            Ok(()) if refining.is_corrected(&task.settings, cover.particles.count(), &components) => {}
+            Ok(()) => {
+                cover.counts.refined_levels = Some(components.most_halvings());
+                cover.corners = components.into_corners();
+                return Ok(StopReason::Complete);
+            }
+            Err(Halt::Refused(refusal)) => {
+                coarse.end();
+                refining.fail(refusal, &components, &cover.attempt, !coarse.are_several)?;
+            }
+            Err(stopped) => return Err(stopped),
+        }
     }
-    Ok(())
-}
-
-/// Divides every face into four, and projects the particles of the finer mesh onto the surface.
-async fn divide(desk: &Desk, mesh: &mut Refinement) -> Result<(), Halt> {
-    let mut division = mesh.begin_division();
-    let mut coarse = desk.until_on(mesh, move |_, mesh, _, left| mesh.divide(&mut division, left)).await?;
-    desk.until_on(mesh, move |sampler, mesh, probe, left| sampler.land(mesh, &mut coarse, probe, left))
-        .await??;
-    Ok(())
-}
-
-/// Makes the passes of a level, or of a frame of a mesh that follows a surface, by its recipe.
-async fn make_passes(desk: &Desk, mesh: &mut Refinement) -> Result<(), Halt> {
-    while let Some(mut rest) = mesh.begin_pass() {
-        desk.until_on(mesh, move |sampler, mesh, probe, left| {
-            sampler.make_pass(mesh, &mut rest, probe, left)
-        })
-        .await??;
-    }
-    Ok(())
 }
 
 /// More steps of a relaxation that has begun, on the particles of a finished run.
-pub(super) async fn relax_further(desk: Desk) -> StopReason {
-    let reason = async {
-        relax(&desk).await?;
-        audit(&desk).await?;
-        desk.now(|sampler| sampler.reason_for_end()).await
-    };
-    let reason = reason.await;
-    ended(&desk, reason).await
-}
-
-/// The relaxation (§4.5 and the end of §5).
-async fn relax(desk: &Desk) -> Result<(), Stopped> {
-    desk.leaving(make_steps(desk), Sampler::leave_step).await
-}
-
-/// A step is kept only if it lowers the energy. At the end all particles are projected onto the
-/// surface as closely as single precision allows, and radii that vary are graded once more.
-async fn make_steps(desk: &Desk) -> Result<(), Stopped> {
-    if !desk.now(|sampler| sampler.relaxation().is_only_graded()).await? {
-        sum_forces(desk, Grading::WhereUneven).await?;
-        desk.now(|sampler| sampler.relaxation().record_first()).await?;
-        while !desk.now(|sampler| sampler.relaxation().is_even()).await? {
-            sweep(desk, Sweep::Move).await?;
-            sum_forces(desk, Grading::WhereUneven).await?;
-            if desk.now(|sampler| sampler.relaxation().judge()).await? {
-                desk.turn().await?;
-            } else {
-                sweep(desk, Sweep::TakeBack).await?;
-                sum_forces(desk, Grading::WhereUneven).await?;
-            }
-        }
-        sweep(desk, Sweep::Polish).await?;
-        if !desk.now(|sampler| sampler.relaxation().distrust_lists()).await? {
-            return Ok(());
-        }
-    }
-    list_neighbours(desk, Grading::Always).await
-}
-
-/// The forces on all particles and their energy, from complete lists of neighbours.
-async fn sum_forces(desk: &Desk, grading: Grading) -> Result<(), Stopped> {
-    list_neighbours(desk, grading).await?;
-    sweep(desk, Sweep::SumForces).await
-}
-
-/// Lists the neighbours of particles whose lists are stale, and lowers radii that are too large
-/// compared with a neighbour's.
-async fn list_neighbours(desk: &Desk, grading: Grading) -> Result<(), Stopped> {
-    let (wants_lists, wants_grid) = desk.now(|sampler| sampler.relaxation().wants_lists()).await?;
-    if wants_grid {
-        sweep(desk, Sweep::FillGrid).await?;
-    }
-    if wants_lists {
-        sweep(desk, Sweep::RenewLists).await?;
-    }
-    if desk.now(move |sampler| sampler.relaxation().wants_grading(grading)).await? {
-        sweep(desk, Sweep::Grade).await?;
-        while desk.now(|sampler| sampler.relaxation().has_lowered()).await? {
-            sweep(desk, Sweep::Grade).await?;
-        }
-    }
-    Ok(())
-}
-
-async fn sweep(desk: &Desk, sweep: Sweep) -> Result<(), Stopped> {
-    desk.until(move |sampler, probe, left| sampler.sweep(sweep, probe, left)).await
-}
-
-/// Finds out which components hold particles.
-async fn audit(desk: &Desk) -> Result<(), Stopped> {
-    desk.now(Sampler::begin_audit).await?;
-    desk.until(Sampler::audit).await
-}
-
-/// Marks the particles next to singular points, even if the run was stopped.
-async fn ended(desk: &Desk, reason: Result<StopReason, Stopped>) -> StopReason {
-    desk.finally(Sampler::mark).await;
-    reason.unwrap_or(StopReason::Cancelled)
+pub(super) fn relax_further<'t>(task: &'t mut Task, cover: &'t mut Cover) -> Work<'t, StopReason> {
+    Box::pin(async move {
+        let reason = async {
+            relax(task, cover).await?;
+            audit(task, cover).await?;
+            Ok(cover.reason_for_end())
+        };
+        let reason = reason.await;
+        ended(task, cover, reason)
+    })
 }
 
 /// A frame of particles that follow a moving surface: with the mesh of a refined run, as long as
 /// the mesh can follow.
-pub(super) async fn follow(desk: Desk) -> StopReason {
-    follow_surface(&desk).await.unwrap_or(StopReason::Cancelled)
+pub(super) fn follow<'t>(task: &'t mut Task, cover: &'t mut Cover) -> Work<'t, StopReason> {
+    Box::pin(async move { follow_surface(task, cover).await.unwrap_or(StopReason::Cancelled) })
 }
 
-async fn follow_surface(desk: &Desk) -> Result<StopReason, Stopped> {
-    if let Some(mut mesh) = desk.now(Sampler::begin_mesh).await? {
-        let refusal = refusal(make_passes(desk, &mut mesh.refinement).await)?;
-        if desk.now(move |sampler| sampler.judge_mesh(mesh, refusal)).await? {
-            return Ok(StopReason::Complete);
-        }
+/// Finds out which components hold particles, now that all are placed.
+async fn audit(task: &mut Task<'_>, cover: &mut Cover) -> Result<(), Stopped> {
+    (cover.phase, cover.fraction) = (Phase::Search, 1.0);
+    if task.surface.creases.repeat_faces(&mut cover.particles, &mut cover.corners) {
+        cover.moved = true;
+        // They belong to the particles before.
+        cover.neighbours.clear();
     }
-    loop {
-        desk.now(Sampler::begin_transport).await?;
-        sweep(desk, Sweep::Transport).await?;
-        let steps = desk.with_field(Sampler::settle).await?;
-        for _ in 0..steps {
-            desk.now(|sampler| sampler.relaxation().distrust_grid()).await?;
-            sum_forces(desk, Grading::Always).await?;
-            sweep(desk, Sweep::Move).await?;
+    cover.components.restart_audit();
+    task.until(cover, Cover::audit).await
+}
+
+/// Marks the particles next to singular points, even if the run was stopped. Returns the reason for
+/// its end.
+fn ended(task: &mut Task, cover: &mut Cover, reason: Result<StopReason, Stopped>) -> StopReason {
+    let singular = cover.components.singular();
+    if !singular.is_empty() {
+        singular::mark(task.probe.field, singular, &mut cover.particles);
+        cover.moved = true;
+        cover.bare = task.surface.find_bare_place(&mut task.probe, singular);
+    }
+    reason.unwrap_or(StopReason::Cancelled)
+}
+
+impl Cover {
+    /// Why the run ends without a particle, if there is none.
+    fn why_empty(&self, task: &Task) -> Option<StopReason> {
+        self.particles.is_empty().then_some(match task.surface.survey.absence {
+            Absence::Constant => StopReason::Constant,
+            Absence::Undefined | Absence::TooLarge => StopReason::Undefined,
+            _ => StopReason::NoSurface,
+        })
+    }
+
+    /// Notes why the surface is not refined, and goes on to fronts of the wanted radius.
+    fn refuse(&mut self, task: &Task, mut refusal: Refusal) {
+        let at = refusal.at().map(|at| Vec3::from(at.0).as_dvec3());
+        // Within two spacings of a tip the tip itself is the obstacle.
+        let reach = 4.0 * self.attempt.radius;
+        let tip =
+            task.surface.tips.iter().find(|tip| at.is_some_and(|at| tip.position.distance(at) <= reach));
+        let at = tip.map(|tip| tip.position.as_vec3().into());
+        self.counts.refusal = Some(at.map_or(refusal, |at| Refusal::Tip { at }));
+        self.attempt = self.attempt.without_refinement(&task.settings, task.surface.bounds.diagonal());
+    }
+
+    /// Why a run ends after it has covered the surface.
+    fn reason_for_end(&self) -> StopReason {
+        if self.front.level().capped { StopReason::Cap } else { StopReason::Complete }
+    }
+
+    fn audit(&mut self, task: &mut Task, left: &mut u32) -> Option<()> {
+        let tolerance = self.attempt.tolerance(&task.surface.survey);
+        let slice = (*left).min(SLICE);
+        let (start, rule) = (task.probe.evaluations(), self.front.level().rule);
+        let Self { components, particles, attempt, .. } = self;
+        let unused = components.audit(&mut task.probe, particles, attempt.radius, tolerance, rule, slice);
+        self.counts.seeding_evaluations += task.probe.evaluations() - start;
+        if unused == 0 {
+            *left = 0;
+            return None;
         }
-        if desk.now(|sampler| sampler.particles().is_empty()).await? {
-            return Ok(StopReason::NoSurface);
-        }
-        if !desk.with_field(Sampler::end_frame).await? {
-            return Ok(StopReason::Complete);
-        }
+        *left -= slice - unused;
+        Some(())
     }
 }

@@ -127,39 +127,31 @@ impl RefineProgress {
     }
 }
 
-impl Sampler {
+impl Sampler<'_> {
     /// The present state. [`Progress::moved`] reports changes since the last step.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        let settled = self.settled();
-        let columns = self.output.inside.as_ref().unwrap_or(&self.output.particles);
-        let rows = self.output.inside.as_ref().map_or(settled, Particles::len);
+        let settled = self.cover.settled();
+        let columns = self.cover.inside.as_ref().unwrap_or(&self.cover.particles);
+        let rows = self.cover.inside.as_ref().map_or(settled, Particles::len);
         let (refine_level, refine_levels) =
-            if self.phase == Phase::Refinement { self.refined.level() } else { (0, 0) };
+            if self.cover.phase == Phase::Refinement { self.cover.refined.level() } else { (0, 0) };
         Progress {
-            phase: self.phase,
+            phase: self.cover.phase,
             particles: columns.count_of_first(rows),
             rows,
-            attempt: self.attempt.number(),
-            level: self.output.particles.level[..settled].last().copied().unwrap_or(0),
+            attempt: self.cover.fronts.max(1),
+            level: self.cover.particles.level[..settled].last().copied().unwrap_or(0),
             refine_level,
             refine_levels,
-            relax_step: self.tools.relaxation.steps_done(),
+            relax_step: self.cover.relaxation.steps_done(),
             relax_steps: self.settings.relax_steps,
-            evaluations: self.tools.memory.evaluations,
-            fraction: self.fraction(settled).max(self.output.fraction),
+            evaluations: self.cover.evaluations,
+            fraction: self.fraction(settled).max(self.cover.fraction),
             stop_reason: self.stop_reason,
             message: self.message(),
-            radius: self.attempt.radius,
-            moved: self.output.moved,
-        }
-    }
-
-    /// Rows of the columns that will stay.
-    pub(super) fn settled(&self) -> usize {
-        match self.phase {
-            Phase::Generation => self.tools.front.level().settled,
-            _ => self.output.particles.len(),
+            radius: self.cover.attempt.radius,
+            moved: self.cover.moved,
         }
     }
 
@@ -167,11 +159,11 @@ impl Sampler {
     fn fraction(&self, particles: usize) -> f64 {
         let relax_steps = f64::from(self.settings.relax_steps);
         let generation = 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps);
-        match self.phase {
+        match self.cover.phase {
             Phase::Idle => 0.0,
-            Phase::Refinement => self.refined.fraction(),
+            Phase::Refinement => self.cover.refined.fraction(),
             Phase::Relaxation => {
-                let relaxed = f64::from(self.tools.relaxation.steps_done()) / relax_steps.max(1.0);
+                let relaxed = f64::from(self.cover.relaxation.steps_done()) / relax_steps.max(1.0);
                 generation + (1.0 - generation) * relaxed
             }
             Phase::Done => 1.0,
@@ -179,9 +171,9 @@ impl Sampler {
             _ => {
                 // A coarse front is the smaller part of its run, and so is a pilot. Any front may
                 // place more particles than expected.
-                let (share, expected) = match &self.attempt.refining {
-                    Some(refining) => (refine::coarse_share(refining.halvings), self.plan.expected),
-                    None => (generation, self.attempt.predicted_count(&self.settings)),
+                let (share, expected) = match self.cover.plan.halvings {
+                    Some(halvings) => (refine::coarse_share(halvings), self.cover.plan.expected),
+                    None => (generation, self.cover.attempt.predicted_count(&self.settings)),
                 };
                 share * (particles as f64 / expected.max(1.0)).min(0.99)
             }

@@ -169,7 +169,7 @@ impl Deref for Source {
 /// A run whose field is changed by requests.
 pub struct Session {
     /// The run. Only the session changes its field and its box.
-    pub run: Run<Source>,
+    pub run: Run<'static, Source>,
     surface: Option<&'static Surface>,
     declared: Vec<Parameter>,
     /// The box given with the field, or the box of its surface.
@@ -589,7 +589,7 @@ impl Session {
     /// particles at the border of a model or an image, or of an open surface of the gallery, whose
     /// box was chosen for it. A closed one fits into its box for all values of its sliders.
     pub fn measure(&mut self, measured: Measured, budget: u32) -> Option<Report> {
-        self.run.measure_copy(measured, budget).map(|report| self.completed(report))
+        self.run.measure_freely(measured, budget).map(|report| self.completed(report))
     }
 
     fn completed(&self, mut report: Report) -> Report {

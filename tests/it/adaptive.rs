@@ -222,13 +222,13 @@ fn the_limit_and_the_stop_button_leave_whole_particles() {
     let settings = settings();
     let mut sampler = begun(&field, &surface.bounds, &settings);
     let settled = loop {
-        let progress = sampler.step(&field, 37);
+        let progress = sampler.step(37);
         if progress.particles > 500 && progress.phase == Phase::Generation {
             break progress.particles;
         }
     };
     sampler.cancel();
-    let progress = sampler.step(&field, 1);
+    let progress = sampler.step(1);
     assert_eq!(progress.stop_reason, Some(StopReason::Cancelled));
     assert_eq!((progress.particles, sampler.particles().len()), (settled, settled));
 }

@@ -16,9 +16,9 @@ fn settings(method: Method, count: u32, seed: u64) -> Settings {
     settings!(method, size_mode: SizeMode::Count, count, seed; ..Settings::default())
 }
 
-fn refined(formula: &str, bounds: &Bounds, count: u32) -> Sampler {
+fn refined(formula: &str, bounds: &Bounds, count: u32) -> Sampler<'static> {
     let field = Formula::as_written(formula, &[]).expect("a formula");
-    sampled(&field, bounds, &settings(Method::Refined, count, 0), 10_000)
+    sampled(field, bounds, &settings(Method::Refined, count, 0), 10_000)
 }
 
 fn mesh_of(particles: &Particles, bounds: &Bounds) -> Triangulation {
@@ -247,11 +247,11 @@ fn what_is_cancelled_has_no_particle_outside_the_box() {
         let settings = settings(Method::Refined, 8_000, 0);
         let mut sampler = begun(&field, &gyroid.bounds, &settings);
         for _ in 0..steps {
-            sampler.step(&field, 1_000);
+            sampler.step(1_000);
         }
         let is_marching = sampler.progress().phase == Phase::Generation;
         sampler.cancel();
-        let last = sampler.step(&field, 0);
+        let last = sampler.step(0);
         assert!(last.stop_reason.is_some());
         // What was beyond the box is gone.
         has_cut_front |= is_marching && last.moved;
@@ -298,7 +298,7 @@ fn what_a_coarse_front_places_beyond_the_box_is_not_shown() {
     let mut sampler = begun(&field, &surface.bounds, &settings(Method::Refined, 8_000, 0));
     let mut shown: Vec<Vec3> = Vec::new();
     loop {
-        let progress = sampler.step(&field, 300);
+        let progress = sampler.step(300);
         let particles = sampler.particles();
         assert_eq!(particles.local.len(), particles.slots.len());
         assert!(progress.particles <= particles.len());

@@ -18,12 +18,12 @@ fn field(formula: &str, q: f64) -> Formula {
     Formula::parse(formula).and_then(|formula| formula.with("q", q)).expect("a formula")
 }
 
-fn finish(run: &mut Run<Formula>, budget: u32) {
+fn finish(run: &mut Run<'_, Formula>, budget: u32) {
     while run.step(budget).stop_reason.is_none() {}
 }
 
 /// A finished run on the surface with `q`, in a box of this half-width.
-fn started(formula: &str, q: f64, half: f64, settings: &Settings) -> Run<Formula> {
+fn started(formula: &str, q: f64, half: f64, settings: &Settings) -> Run<'static, Formula> {
     let settings = settings.in_box(Bounds::cube(half));
     let mut run = Run::start(field(formula, q), &settings).expect("a run");
     finish(&mut run, u32::MAX);
@@ -32,7 +32,7 @@ fn started(formula: &str, q: f64, half: f64, settings: &Settings) -> Run<Formula
 
 /// Moves the surface of a run from one value of `q` to another in so many frames, each done with
 /// steps of `budget`.
-fn sweep(run: &mut Run<Formula>, formula: &str, [from, to]: [f64; 2], frames: u32, budget: u32) {
+fn sweep(run: &mut Run<'_, Formula>, formula: &str, [from, to]: [f64; 2], frames: u32, budget: u32) {
     for frame in 1..=frames {
         let q = from + (to - from) * f64::from(frame) / f64::from(frames);
         assert_eq!(run.follow(field(formula, q)), Ok(()), "{formula}, to {q}");
@@ -134,7 +134,7 @@ fn what_leaves_the_box_is_dropped_and_what_comes_in_is_covered() {
 }
 
 /// What of a run may not change where its particles cannot follow.
-fn state(run: &mut Run<Formula>) -> (u64, u64, String) {
+fn state(run: &mut Run<'_, Formula>) -> (u64, u64, String) {
     let progress = run.progress().map(|progress| format!("{progress:?}"));
     (
         run.particles().digest(),
@@ -242,7 +242,7 @@ fn a_frame_that_is_cut_short_is_made_up_for_by_the_next() {
 }
 
 /// The mesh of a run.
-fn mesh_of(run: &mut Run<Formula>) -> HalfEdges {
+fn mesh_of(run: &mut Run<'_, Formula>) -> HalfEdges {
     while run.join(u32::MAX).is_none() {}
     HalfEdges::from_triangles(run.count(), run.triangles()).expect("a manifold")
 }
@@ -284,7 +284,7 @@ fn the_mesh_of_a_refined_run_moves_and_keeps_its_order() {
             run.count()
         );
         let mean_radius =
-            |run: &Run<Formula>| run.particles().radius.iter().sum::<f32>() / run.count() as f32;
+            |run: &Run<'_, Formula>| run.particles().radius.iter().sum::<f32>() / run.count() as f32;
         let grown = mean_radius(&run) / mean_radius(&started(formula, way[1], half, &settings));
         assert!((0.97..1.03).contains(&grown), "{of}: radii {grown} times those of a fresh run");
         let identity = &run.particles().identity;

@@ -19,7 +19,7 @@ const PINS: [(&str, f64, f64); 4] =
     [("sphere", 0.93, 55.5), ("ellipsoid", 0.93, 55.5), ("torus", 0.93, 54.5), ("tanglecube", 0.88, 54.0)];
 
 /// Samples by the front of the paper alone, without gap filling and relaxation.
-fn front(surface: &str, radius_share: f64) -> Sampler {
+fn front(surface: &str, radius_share: f64) -> Sampler<'static> {
     let settings = settings!(radius_share, relax_steps: 0, gaps: GapPolicy::Leave; ..Settings::default());
     of_gallery(surface, &settings)
 }
@@ -228,7 +228,7 @@ fn where_the_surface_moves_little_the_seed_does_and_most_places_keep_their_level
             let [before, after] = values.map(|value| {
                 let mut field = surface.field();
                 field.set_parameter(name, value).expect("a parameter");
-                sampled(&field, &surface.bounds, &settings, 100_000)
+                sampled(field, &surface.bounds, &settings, 100_000)
             });
             let (old, new) = (before.particles(), after.particles());
             let spacing = 2.0 * before.radius() as f32;

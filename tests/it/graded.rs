@@ -1,7 +1,7 @@
 //! The refinement of a coarse front to sizes that follow the curvature.
 
 use crate::refine::assert_rings;
-use crate::runs::{begun, gallery_figures, of_gallery, sampled_in_any_steps};
+use crate::runs::{begun, gallery_figures, of_gallery, sampled_in_any_steps, shared};
 use marching_particles::differential::exact_curvature;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
@@ -20,7 +20,7 @@ fn counted(count: u32, seed: u64) -> Settings {
 }
 
 /// A run, its figures and the surface that it is on.
-fn run(id: &str, settings: &Settings) -> (Sampler, Figures) {
+fn run(id: &str, settings: &Settings) -> (Sampler<'static>, Figures) {
     let sampler = of_gallery(id, settings);
     let figures = gallery_figures(id, sampler.particles(), Some(&sampler.particles().radius));
     (sampler, figures)
@@ -109,12 +109,12 @@ fn what_is_cancelled_can_be_relaxed() {
     for steps in [5, 100, 300] {
         let mut sampler = begun(&field, &surface.bounds, &counted(3_000, 0));
         for _ in 0..steps {
-            sampler.step(&field, 500);
+            sampler.step(500);
         }
         sampler.cancel();
-        assert!(sampler.step(&field, 0).stop_reason.is_some());
-        assert!(sampler.relax(1));
-        while sampler.step(&field, 500).stop_reason.is_none() {}
+        assert!(sampler.step(0).stop_reason.is_some());
+        assert!(sampler.relax(&shared(&field), 1));
+        while sampler.step(500).stop_reason.is_none() {}
         assert!(sampler.particles().local.iter().all(|p| p.is_finite()));
     }
 }

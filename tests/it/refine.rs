@@ -1,7 +1,7 @@
 //! The refinement of a coarse front: its figures, its count, and what happens where it cannot be
 //! had.
 
-use crate::runs::{begun, figures, sampled, sampled_in_any_steps};
+use crate::runs::{begun, figures, sampled, sampled_in_any_steps, shared};
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
@@ -92,10 +92,10 @@ fn what_is_cancelled_keeps_the_last_whole_level() {
     for steps in [40, 120, 300, 600] {
         let mut sampler = begun(&field, &surface.bounds, &settings);
         for _ in 0..steps {
-            sampler.step(&field, 1_000);
+            sampler.step(1_000);
         }
         sampler.cancel();
-        assert!(sampler.step(&field, 0).stop_reason.is_some());
+        assert!(sampler.step(0).stop_reason.is_some());
         let particles = sampler.particles();
         assert_rings(particles);
         let f = figures(&field, &surface.bounds, particles, None);
@@ -187,7 +187,7 @@ fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
     let mut sampler = begun(&field, &bounds, &settings);
     let mut counts = Vec::new();
     loop {
-        let progress = sampler.step(&field, 1);
+        let progress = sampler.step(1);
         if progress.phase == Phase::Refinement {
             counts.push(progress.particles);
         }
@@ -201,10 +201,10 @@ fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
     for steps in [60, 80, 100, 150, 200, 300] {
         let mut sampler = begun(&field, &bounds, &settings);
         for _ in 0..steps {
-            sampler.step(&field, 500);
+            sampler.step(500);
         }
         sampler.cancel();
-        sampler.step(&field, 0);
+        sampler.step(0);
         assert_rings(sampler.particles());
         let small = on_small_sphere(sampler.particles());
         assert!(small > 10, "{small} of {} after {steps} steps", sampler.particles().len());
@@ -219,7 +219,7 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     let mut sampler = begun(&field, &surface.bounds, &settings);
     let (mut told, mut shown, mut fraction) = (Vec::new(), Vec::new(), 0.0);
     loop {
-        let progress = sampler.step(&field, 500);
+        let progress = sampler.step(500);
         if progress.phase == Phase::Refinement {
             let now = progress.fraction;
             assert!((fraction..=1.0).contains(&now), "{now} after {fraction}");
@@ -243,17 +243,17 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     assert_eq!(shown.len() as u32, levels - 1, "{shown:?}");
 
     sampler
-        .begin(&field, glam::DVec3::ZERO, &surface.bounds, &settings, None)
+        .begin(&shared(&field), glam::DVec3::ZERO, &surface.bounds, &settings, None)
         .expect("room for the particles");
     let first = loop {
-        let progress = sampler.step(&field, 500);
+        let progress = sampler.step(500);
         if progress.phase == Phase::Refinement && progress.moved {
             break progress.particles;
         }
     };
     assert_eq!(first, shown[0]);
     sampler.cancel();
-    sampler.step(&field, 0);
+    sampler.step(0);
     assert_eq!(sampler.particles().len(), first);
     let f = figures(&field, &surface.bounds, sampler.particles(), None);
     assert!(f.angles.smallest_angle > 20.0, "the coarse level is in order: {}°", f.angles.smallest_angle);
@@ -269,7 +269,7 @@ fn a_refined_run_has_the_mesh_that_it_led_to() {
         ("two spheres", &mut two, cube, 4_000, 2, 4),
         ("gyroid", &mut gyroid.field(), gyroid.bounds, 8_000, 1, -53),
     ] {
-        let mut sampler = sampled(field, &bounds, &refined(count, 0), 10_000);
+        let mut sampler = sampled(&*field, &bounds, &refined(count, 0), 10_000);
         let particles = sampler.particles();
         let topology = Topology::new(sampler.triangles(), particles.len());
         assert!(topology.is_manifold(), "{name}");
@@ -284,7 +284,7 @@ fn a_refined_run_has_the_mesh_that_it_led_to() {
             assert!(upright > 0.0, "{name}: the triangle of {a}, {b} and {c} faces inward");
         }
         // The particles move, and the mesh is gone.
-        assert!(sampler.relax(1));
+        assert!(sampler.relax(&shared(&*field), 1));
         assert!(sampler.triangles().is_empty(), "{name}");
     }
 }
@@ -293,7 +293,7 @@ fn a_refined_run_has_the_mesh_that_it_led_to() {
 fn a_front_has_no_mesh_before_it_is_joined() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
     let settings = settings!(method: Method::Front; ..refined(1_000, 0));
-    let sampler = sampled(&surface.field(), &surface.bounds, &settings, 10_000);
+    let sampler = sampled(surface.field(), &surface.bounds, &settings, 10_000);
     assert!(sampler.triangles().is_empty());
 }
 
@@ -369,7 +369,7 @@ fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
         let field = Formula::as_written(&text, &[]).expect("a formula");
         let settings = settings!(method: Method::Refined, radius_share: 0.0077; ..Settings::default());
         let mut sampler = begun(&field, &Bounds::cube(1.5), &settings);
-        let steps = (0..STEPS).take_while(|_| sampler.step(&field, 10_000).stop_reason.is_none()).count();
+        let steps = (0..STEPS).take_while(|_| sampler.step(10_000).stop_reason.is_none()).count();
         assert!(steps < STEPS, "{outer}: {steps} steps were not enough");
         let refusal = sampler.counts().refusal;
         assert!(

@@ -1,7 +1,7 @@
 //! Tests of the relaxation (paper §4.5): the energy decreases at every step, holes and crowded
 //! pairs shrink, and particles stay on the surface.
 
-use crate::runs::{begun, gallery_figures, sampled};
+use crate::runs::{begun, gallery_figures, sampled, shared};
 use crate::smooth::smooth;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
@@ -9,12 +9,11 @@ use marching_particles::particles::Particles;
 use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode, StopReason};
 
 /// The particles after the front and after the relaxation.
-fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particles, Sampler) {
-    let field = surface.field();
-    let mut sampler = begun(&field, &surface.bounds, settings);
+fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particles, Sampler<'static>) {
+    let mut sampler = begun(surface.field(), &surface.bounds, settings);
     let mut before = Particles::default();
     loop {
-        let progress = sampler.step(&field, 1);
+        let progress = sampler.step(1);
         if progress.phase == Phase::Relaxation && before.is_empty() {
             before = sampler.particles().clone();
         }
@@ -22,7 +21,7 @@ fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particl
             break;
         }
     }
-    while sampler.step(&field, 10_000).stop_reason.is_none() {}
+    while sampler.step(10_000).stop_reason.is_none() {}
     (before, sampler)
 }
 
@@ -57,11 +56,11 @@ fn energy(particles: &Particles, radius: f64) -> f64 {
 fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f64>) {
     let field = surface.field();
     let mut sampler = begun(&field, &surface.bounds, settings);
-    while sampler.step(&field, 100_000).phase != Phase::Relaxation {}
+    while sampler.step(100_000).phase != Phase::Relaxation {}
     let mut defined = Vec::new();
     // Steps of one unit of work catch the particles of an accepted step before the next one moves
     // any.
-    while sampler.step(&field, 1).stop_reason.is_none() {
+    while sampler.step(1).stop_reason.is_none() {
         if sampler.energy().len() > defined.len() {
             defined.push(energy(sampler.particles(), sampler.radius()));
         }
@@ -95,7 +94,7 @@ fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
 fn cutting_a_relaxation_into_steps_changes_nothing_even_if_moves_are_taken_back() {
     let surface = gallery::find("double-torus").expect("a gallery surface");
     let settings = settings!(radius_share: 0.03; ..Settings::default());
-    let run = |budget: u32| sampled(&surface.field(), &surface.bounds, &settings, budget);
+    let run = |budget: u32| sampled(surface.field(), &surface.bounds, &settings, budget);
     let whole = run(u32::MAX);
     // There are two evaluations per particle and step, and two at the end. The others are those of
     // rejected steps.
@@ -116,19 +115,19 @@ fn a_relaxation_that_goes_on_after_a_stop_in_mid_step_measures_where_the_particl
     for units in (1..4_000).step_by(331) {
         let field = surface.field();
         let mut sampler = begun(&field, &surface.bounds, &settings);
-        while sampler.step(&field, 100_000).phase != Phase::Relaxation {}
+        while sampler.step(100_000).phase != Phase::Relaxation {}
         for _ in 0..units {
-            sampler.step(&field, 1);
+            sampler.step(1);
         }
         let was = sampler.energy().last().copied();
         sampler.cancel();
-        sampler.step(&field, 0);
+        sampler.step(0);
         let is = energy(sampler.particles(), sampler.radius());
         is_amid += u32::from(was.is_some_and(|was| (is / was - 1.0).abs() > 1e-5));
-        assert!(sampler.relax(3));
+        assert!(sampler.relax(&shared(&field), 3));
         let first = sampler.energy().len();
         let mut defined = Vec::new();
-        while sampler.step(&field, 1).stop_reason.is_none() {
+        while sampler.step(1).stop_reason.is_none() {
             if sampler.energy().len() > first + defined.len() {
                 defined.push(energy(sampler.particles(), sampler.radius()));
             }

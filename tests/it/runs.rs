@@ -8,21 +8,36 @@ use marching_particles::quality::{Figures, MeasureOptions, measure};
 use marching_particles::sampler::{Sampler, Settings};
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Report, Run};
+use std::sync::Arc;
 
 /// A sampler that has begun a run on a field in a box.
-pub(crate) fn begun(field: &dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
+pub(crate) fn begun<'f>(field: impl Field + 'f, bounds: &Bounds, settings: &Settings) -> Sampler<'f> {
     Run::start(field, &settings.in_box(*bounds)).expect("valid settings").into_sampler()
 }
 
+/// A field that is shared with a sampler.
+pub(crate) fn shared<'f>(field: impl Field + 'f) -> Arc<dyn Field + 'f> {
+    Arc::new(field)
+}
+
 /// A field, sampled in a box by steps of `budget`.
-pub(crate) fn sampled(field: &dyn Field, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
+pub(crate) fn sampled<'f>(
+    field: impl Field + 'f,
+    bounds: &Bounds,
+    settings: &Settings,
+    budget: u32,
+) -> Sampler<'f> {
     let mut run = Run::start(field, &settings.in_box(*bounds)).expect("valid settings");
     while run.step(budget).stop_reason.is_none() {}
     run.into_sampler()
 }
 
 /// Samples a field in a box, and finds the same particles however the run is cut into steps.
-pub(crate) fn sampled_in_any_steps(field: &dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
+pub(crate) fn sampled_in_any_steps<'f>(
+    field: &'f dyn Field,
+    bounds: &Bounds,
+    settings: &Settings,
+) -> Sampler<'f> {
     let whole = sampled(field, bounds, settings, u32::MAX);
     for budget in [1, 777] {
         let cut = sampled(field, bounds, settings, budget);
@@ -32,9 +47,9 @@ pub(crate) fn sampled_in_any_steps(field: &dyn Field, bounds: &Bounds, settings:
 }
 
 /// A surface of the gallery, sampled.
-pub(crate) fn of_gallery(id: &str, settings: &Settings) -> Sampler {
+pub(crate) fn of_gallery(id: &str, settings: &Settings) -> Sampler<'static> {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    sampled(&surface.field(), &surface.bounds, settings, 10_000)
+    sampled(surface.field(), &surface.bounds, settings, 10_000)
 }
 
 /// The fates of the slots agree with what was counted, and each particle but a seed is the child of

@@ -1,7 +1,7 @@
 //! Tests of the radius field in adaptive sampling (paper §5): radii follow the radius law, respect
 //! the grading, and the relaxation evens them out.
 
-use crate::runs::{gallery_figures, of_gallery, sampled};
+use crate::runs::{gallery_figures, of_gallery, sampled, shared};
 use marching_particles::differential::{Curvature, curvatures};
 use marching_particles::field::gallery::{self, SURFACES};
 use marching_particles::field::{Field, Frame};
@@ -169,8 +169,8 @@ fn more_steps_can_follow_and_cutting_a_run_into_slices_changes_nothing() {
     let mut sliced = sampled(&field, &surface.bounds, &adaptive(2_000, 6), 17);
     assert_eq!(sliced.particles().digest(), whole.particles().digest());
     let before = *sliced.energy().last().expect("an energy");
-    assert!(sliced.relax(4));
-    while sliced.step(&field, 1_000).stop_reason.is_none() {}
+    assert!(sliced.relax(&shared(&field), 4));
+    while sliced.step(1_000).stop_reason.is_none() {}
     assert_eq!(sliced.energy().len(), 11);
     assert!(*sliced.energy().last().expect("an energy") < before);
 }

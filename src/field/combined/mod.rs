@@ -263,9 +263,7 @@ impl Piecewise for Combination {
             for part in &mut own.parts {
                 let Some((cells, known)) = edges::known_in(&**part, &bounds, width).await else { continue };
                 found.extend(cells);
-                if let Some(known) = known {
-                    *part = known.of_shared(|| Arc::clone(part));
-                }
+                *part = edges::KnownPieces::of_shared(known.as_ref(), part);
             }
             let origin = bounds.middle();
             let frame = Frame { length: bounds.diagonal(), ..Frame::around(origin) };

@@ -30,10 +30,13 @@ impl KnownPieces {
     }
 
     /// [`KnownPieces::of`], for a field that is shared.
-    pub(crate) fn of_shared(&self, field: impl FnOnce() -> Arc<dyn Field>) -> Arc<dyn Field> {
-        match self {
-            Self::Own(own) => Arc::<dyn Piecewise>::clone(own),
-            Self::Edges(table) => Arc::new(KnownField { field: field(), table: Some(Arc::clone(table)) }),
+    pub(crate) fn of_shared<'f>(known: Option<&Self>, field: &Arc<dyn Field + 'f>) -> Arc<dyn Field + 'f> {
+        match known {
+            None => Arc::clone(field),
+            Some(Self::Own(own)) => Arc::<dyn Piecewise>::clone(own),
+            Some(Self::Edges(table)) => {
+                Arc::new(KnownField { field: Arc::clone(field), table: Some(Arc::clone(table)) })
+            }
         }
     }
 }

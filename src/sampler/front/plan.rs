@@ -25,6 +25,9 @@ pub(crate) struct FrontPlan {
     pub(crate) max_particles: usize,
     /// Particles that are expected.
     pub(crate) expected: f64,
+    /// How often the front is to be refined; none if it is no coarse one. A coarse front grows
+    /// beyond the box.
+    pub(crate) halvings: Option<u32>,
 }
 
 impl FrontPlan {

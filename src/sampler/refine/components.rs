@@ -39,6 +39,7 @@ struct Candidate {
 }
 
 /// Properties of the surface that are known before it is refined.
+#[derive(Default)]
 pub(crate) struct SurfaceFacts<'a> {
     /// The box that is sampled. Coarse fronts grow beyond it.
     pub(crate) bounds: Bounds,

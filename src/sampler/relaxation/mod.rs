@@ -148,11 +148,6 @@ pub(crate) const TRANSPORT_REACH: f32 = 2.0;
 const TRANSPORT_TRUST: f32 = 0.1;
 
 impl Relaxation {
-    /// Forgets an earlier run.
-    pub(crate) fn clear(&mut self) {
-        self.stepper.clear();
-    }
-
     /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was
     /// not cut short. Where the largest lift is finite, particles of different sheets that face the
     /// same way do not repel each other.
