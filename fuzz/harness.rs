@@ -1,5 +1,5 @@
-//! What must hold of any formula, file, image and request. Each function takes any bytes and panics
-//! where something does not hold.
+//! What must hold of any formula, file, image, mesh and request. Each function takes any bytes and
+//! panics where something does not hold.
 //!
 //! libFuzzer calls them (`targets/`), and so does `tests/it/fuzz.rs`, with mutations of the files
 //! in `seeds/`.
@@ -14,7 +14,7 @@ use marching_particles::pointcloud::read::Reader;
 use marching_particles::sampler::{Search, Settings};
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::slices::complete;
-use marching_particles::{Image, ImageChoice, RawVoxels, VoxelType};
+use marching_particles::{Image, ImageChoice, RawVoxels, TriangleMesh, VoxelType};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -317,6 +317,29 @@ pub fn run(
     let is_whole = search != Search::Proven || sampled.missing == Some(sampled.without.len());
     assert!(is_whole, "{}: {sampled:?}", context());
     Some(Outcome { digest: session.run.particles().digest(), search })
+}
+
+/// The file of a mesh: it is read and mended, or refused in words, and a mended mesh is one.
+pub fn mesh(bytes: &[u8]) {
+    let mesh = TriangleMesh::read("a", bytes.to_vec());
+    // Counts in a short file can make a large mesh.
+    if mesh.as_ref().is_ok_and(|mesh| mesh.faces().len() > 2_000) {
+        return;
+    }
+    let solid = match mesh.and_then(|mesh| mesh.solid()) {
+        Ok(solid) => solid,
+        Err(error) => {
+            let message = error.to_string();
+            assert!(!message.is_empty() && !message.chars().any(char::is_control), "{error:?}");
+            return;
+        }
+    };
+    let (mesh, count) = (solid.mesh(), solid.mesh().vertices().len());
+    assert!(mesh.vertices().iter().all(|p| p.is_finite()) && mesh.area() > 0.0, "{mesh:?}");
+    let is_face = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a && (a.max(b).max(c) as usize) < count;
+    assert!(mesh.faces().iter().all(is_face), "{mesh:?}");
+    assert!(solid.border_loops() <= solid.border_edges(), "{mesh:?}");
+    assert_eq!(solid.is_closed(), solid.border_edges() == 0 && solid.fan_edges() == 0);
 }
 
 /// A file of an image: it is refused with a message, or it is an image whose voxels are finite,

@@ -100,7 +100,7 @@
 //! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | three-dimensional images | [`Image`], [`ImageField`], [`ImageChoice`], [`ImageSurface`], [`ImageOutline`], [`ImagePlacement`], [`Voxel`], [`VoxelType`], [`Label`], [`DEFAULT_LABEL_WIDTH`], [`ImageFormat`], [`RawVoxels`], [`ImageError`], [`ImageReadError`] |
-//! | triangle meshes | [`TriangleMesh`], [`MeshSolid`], [`MeshRepairs`], [`MeshEdges`], [`MeshField`], [`MeshKind`], [`MeshChange`], [`MeshDistances`], [`MeshError`] |
+//! | triangle meshes | [`TriangleMesh`], [`MeshSolid`], [`MeshRepairs`], [`MeshOptions`], [`MeshEdges`], [`MeshField`], [`MeshKind`], [`MeshRim`], [`MeshChange`], [`MeshDistances`], [`MeshError`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Body`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`]; [`Value`], [`NamedValues`] |
@@ -204,8 +204,8 @@ pub use pointcloud::read::{InputFormat, ReadError};
 pub use quality::{Figures, Histogram, Hole, Measurements, NamedValues, Pair, Places, figures};
 #[cfg(all(feature = "images", feature = "points"))]
 pub use remesh::{
-    MeshChange, MeshDistances, MeshEdges, MeshError, MeshField, MeshKind, MeshRepairs, MeshSolid,
-    TriangleMesh,
+    MeshChange, MeshDistances, MeshEdges, MeshError, MeshField, MeshKind, MeshOptions, MeshRepairs, MeshRim,
+    MeshSolid, TriangleMesh,
 };
 pub use run::{
     Cut, Error, Growth, Measured, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run,

@@ -174,6 +174,7 @@ const ROOMS: [Room; 6] = [
             ("rule", &[]),
             ("patches", &["edges", "rule", "tree"]),
             ("sheet", &["edges", "tree"]),
+            ("rim", &["edges", "sheet", "tree"]),
             ("parts", &["patches", "rule", "sheet", "tree"]),
             ("scan", &["edges", "tree"]),
             ("compare", &["tree"]),

@@ -7,7 +7,7 @@ use marching_particles::pointcloud::job::Job;
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{
     BatchField, BatchPiecewise, Bounds, Combined, Formula, Image, ImageChoice, ImageError, MeshEdges,
-    MeshError, MeshField, MeshKind, TriangleMesh, VoxelType,
+    MeshError, MeshField, MeshKind, MeshOptions, TriangleMesh, VoxelType,
 };
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
@@ -163,12 +163,13 @@ impl Field {
         vertices: PyReadonlyArray2<'_, f64>,
         faces: PyReadonlyArray2<'_, u32>,
         edges: &str,
+        borders: Option<bool>,
         smooth: Option<f64>,
     ) -> PyResult<(Self, Mesh, String)> {
         let vertices: Vec<DVec3> =
             vertices.as_slice()?.as_chunks::<3>().0.iter().map(|&p| DVec3::from_array(p)).collect();
         let faces = faces.as_slice()?.as_chunks::<3>().0.to_vec();
-        py.detach(|| Self::meshed(TriangleMesh::new(vertices, faces), edges, smooth))
+        py.detach(|| Self::meshed(TriangleMesh::new(vertices, faces), edges, borders, smooth))
     }
 
     /// [`Self::mesh`] for the content of a file of this name.
@@ -178,9 +179,10 @@ impl Field {
         name: &str,
         content: Vec<u8>,
         edges: &str,
+        borders: Option<bool>,
         smooth: Option<f64>,
     ) -> PyResult<(Self, Mesh, String)> {
-        py.detach(|| Self::meshed(TriangleMesh::read(name, content), edges, smooth))
+        py.detach(|| Self::meshed(TriangleMesh::read(name, content), edges, borders, smooth))
     }
 
     /// The union, in a box around the boxes of both fields if they are known.
@@ -263,6 +265,7 @@ impl Field {
     fn meshed(
         mesh: Result<TriangleMesh, MeshError>,
         edges: &str,
+        borders: Option<bool>,
         smooth: Option<f64>,
     ) -> PyResult<(Self, Mesh, String)> {
         let raised = |error: MeshError| PyValueError::new_err(error.to_string());
@@ -273,11 +276,14 @@ impl Field {
             angle => MeshEdges::Angle(angle.parse().unwrap_or(f64::NAN)),
         };
         let solid = mesh.solid().map_err(raised)?;
-        let field = solid.field(edges, smooth).map_err(raised)?;
+        let mut options = MeshOptions::with_edges(edges);
+        (options.borders, options.smooth) = (borders, smooth);
+        let field = solid.field(&options).map_err(raised)?;
         let known = serde_json::json!({
             "kind": if matches!(field.kind(), MeshKind::Parts { .. }) { "part" } else { "scan" },
             "repairs": solid.repairs().words(),
             "border_edges": solid.border_edges(),
+            "border_loops": solid.border_loops(),
             "notes": mesh.notes(),
         });
         Ok((Self::new(Arc::new(field.clone()), None), Mesh(field), known.to_string()))

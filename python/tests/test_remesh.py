@@ -54,6 +54,22 @@ def test_smooth_mesh_is_a_scan():
     assert np.abs(np.linalg.norm(new.vertices, axis=1) - 1).max() < 5e-3
 
 
+def test_open_surface_ends_at_its_border():
+    n, m = 64, 20
+    turn, rise = np.meshgrid(2 * np.pi * np.arange(n) / n, np.linspace(0, np.pi / 2, m + 1))
+    ball = np.stack([np.cos(turn) * np.cos(rise), np.sin(turn) * np.cos(rise), np.sin(rise)], axis=-1)
+    at = np.arange(n * m)
+    beside = at // n * n + (at + 1) % n
+    faces = np.vstack([np.column_stack([at, beside, beside + n]), np.column_stack([at, beside + n, at + n])])
+    model = mp.TriangleMesh((ball.reshape(-1, 3), faces))
+    assert (model.kind, model.border_edges, model.border_loops) == ("part", n, 1)
+    new = mp.remesh(model, count=4000, method="refined").to_trimesh()
+    border = new.vertices[np.unique(new.edges[trimesh.grouping.group_rows(new.edges_sorted, 1)])]
+    assert new.euler_number == 1 and np.abs(border[:, 2]).max() < 1e-4
+    assert np.abs(np.linalg.norm(new.vertices, axis=1) - 1).max() < 1e-3
+    assert new.area == pytest.approx(2 * np.pi, rel=1e-3)
+
+
 def test_mesh_is_an_operand():
     box = mp.TriangleMesh(trimesh.creation.box((2, 2, 1)))
     drilled = mp.difference(box, "x^2 + y^2 - 0.25")
@@ -63,8 +79,11 @@ def test_mesh_is_an_operand():
 
 
 def test_what_cannot_be_sampled_is_refused():
-    with pytest.raises(ValueError, match="sheet that encloses no volume"):
-        mp.remesh(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), count=500)
+    flat = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
+    with pytest.raises(ValueError, match="folded flat"):
+        mp.remesh((flat, [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]), count=500)
+    with pytest.raises(TypeError, match="borders must be True, False or None"):
+        mp.TriangleMesh((flat, [[0, 1, 2]]), borders="keep")
     with pytest.raises(ValueError, match="beyond the 3 vertices"):
         mp.remesh(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]]), count=500)
     with pytest.raises(TypeError, match="a mesh of trimesh or PyVista"):

@@ -2,6 +2,7 @@
 
 use crate::image::{VoxelSize, raw, voxel_size};
 use crate::options::{SamplingOptions, list, number, whole};
+use crate::remesh::MeshBorders;
 use crate::spacing::{SpacingOption, spacing, units};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -387,9 +388,10 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "XxYxZ", value_parser = voxel_size, requires = "image", help_heading = "Surface")]
     pub(crate) voxel_size: Option<VoxelSize>,
 
-    /// File of a triangle mesh to sample anew: STL, OBJ, PLY, OFF or GLB; `-` is standard input.
-    /// Sharp edges are kept, holes are closed, and the report says how far the new mesh is from the
-    /// old one. With --formula the mesh is an operand named `model`
+    /// File of a triangle mesh to sample anew: STL, OBJ, PLY, OFF, GLB or 3MF; `-` is standard
+    /// input. Sharp edges are kept, holes of solids are closed, open surfaces end at their border,
+    /// and the report says how far the new mesh is from the old one. With --formula the mesh is an
+    /// operand named `model`
     #[arg(
         long, value_name = "FILE", help_heading = "Surface",
         conflicts_with_all = ["surface", "points", "image", "closed", "thickness"]
@@ -401,6 +403,11 @@ pub(crate) struct SurfaceArguments {
     /// meshes with holes [default: auto]
     #[arg(long, value_name = "DEGREES|auto|none", value_parser = mesh_edges, requires = "mesh_in", help_heading = "Surface")]
     pub(crate) mesh_edges: Option<MeshEdges>,
+
+    /// Whether the new surface of --mesh-in ends at the borders of the mesh, or its holes are
+    /// closed [default: keep for open surfaces, such as a leaf or a terrain, else close]
+    #[arg(long, value_name = "WORD", value_enum, requires = "mesh_in", help_heading = "Surface")]
+    pub(crate) mesh_borders: Option<MeshBorders>,
 
     /// Take --mesh-in for a scan, and smooth it by a Gaussian filter of this width, in cells of the
     /// grid of distances, 0 to 10 [default: by the measured noise, 0.7 to 3]

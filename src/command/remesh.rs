@@ -4,30 +4,26 @@ use crate::arguments::SurfaceArguments;
 use crate::failure::Failure;
 use crate::output::STANDARD;
 use marching_particles::math::{counted, grouped, significant};
-use marching_particles::{MeshChange, MeshEdges, MeshField, MeshKind, Sample, TriangleMesh, Vertices};
+use marching_particles::session::{MeshInfo, MeshPart, MeshScan};
+use marching_particles::{MeshChange, MeshField, MeshOptions, Sample, TriangleMesh, Vertices};
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
 
+/// What becomes of the borders of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum MeshBorders {
+    /// The surface ends at them
+    Keep,
+    /// Holes are closed smoothly
+    Close,
+}
+
 /// The mesh that is sampled again, for the report.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct RemeshInfo {
-    /// Name of the file.
-    pub(crate) name: String,
-    /// Vertices and faces after the repairs.
-    pub(crate) vertices: usize,
-    pub(crate) faces: usize,
-    /// Pieces, each connected through edges with two faces.
-    pub(crate) pieces: usize,
-    /// Edges with one face, and with more than two.
-    pub(crate) border_edges: usize,
-    pub(crate) fan_edges: usize,
-    /// The repairs, in words.
-    pub(crate) mended: Vec<String>,
-    /// How the mesh became a field, in words.
-    pub(crate) made: Vec<String>,
-    /// What the reader left out.
-    pub(crate) notes: Vec<String>,
+    #[serde(flatten)]
+    pub(crate) mesh: MeshInfo,
     /// The comparison with the new mesh; none without a new mesh.
     pub(crate) change: Option<MeshChange>,
 }
@@ -40,20 +36,11 @@ pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(MeshF
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mesh = TriangleMesh::read(&name, bytes).map_err(|error| wrong(&error))?;
     let solid = mesh.solid().map_err(|error| wrong(&error))?;
-    let edges = arguments.mesh_edges.unwrap_or_default();
-    let field = solid.field(edges, arguments.mesh_smooth).map_err(|error| wrong(&error))?;
-    let info = RemeshInfo {
-        name,
-        vertices: solid.mesh().vertices().len(),
-        faces: solid.mesh().faces().len(),
-        pieces: solid.pieces(),
-        border_edges: solid.border_edges(),
-        fan_edges: solid.fan_edges(),
-        mended: solid.repairs().words(),
-        made: made(&field, edges),
-        notes: mesh.notes().to_vec(),
-        change: None,
-    };
+    let mut options = MeshOptions::with_edges(arguments.mesh_edges.unwrap_or_default());
+    options.borders = arguments.mesh_borders.map(|choice| choice == MeshBorders::Keep);
+    options.smooth = arguments.mesh_smooth;
+    let field = solid.field(&options).map_err(|error| wrong(&error))?;
+    let info = RemeshInfo { mesh: MeshInfo::new(&name, mesh.notes(), &field), change: None };
     Ok(Some((field, info)))
 }
 
@@ -66,33 +53,40 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// How the mesh became a field, in words.
-fn made(field: &MeshField, edges: MeshEdges) -> Vec<String> {
-    match field.kind() {
-        MeshKind::Parts { patches, edges, corners, faded, .. } => {
-            let mut lines = vec![format!(
-                "a part with edges: {}, {} of the mesh kept, {}",
-                counted(patches, "patch", "patches"),
-                counted(edges, "sharp edge", "sharp edges"),
-                counted(corners, "corner", "corners"),
-            )];
-            if faded > 0 {
-                let faded = counted(faded, "sharp edge fades", "sharp edges fade");
-                lines.push(format!("note: {faded} out within a patch and will be rounded"));
-            }
-            lines
+/// How a part became a field, in words.
+fn made_of_part(part: &MeshPart) -> Vec<String> {
+    let &MeshPart { patches, edges, corners, faded, rim } = part;
+    let mut lines = vec![format!(
+        "a part with edges: {}, {} of the mesh kept, {}",
+        counted(patches, "patch", "patches"),
+        counted(edges, "sharp edge", "sharp edges"),
+        counted(corners, "corner", "corners"),
+    )];
+    if let Some(rim) = rim {
+        lines.push(format!(
+            "an open surface, which ends at its border: {} of {}",
+            counted(rim.loops, "closed curve", "closed curves"),
+            counted(rim.edges, "edge", "edges")
+        ));
+        if rim.is_smoothed {
+            lines.push("note: the border zigzags and was smoothed".to_owned());
         }
-        MeshKind::Scan { size: [x, y, z], cell, smooth, .. } => {
-            let other = if edges == MeshEdges::Auto { "; --mesh-edges 30 keeps edges" } else { "" };
-            vec![format!(
-                "a scan, without sharp edges: the distance on a grid of {x} × {y} × {z} cells of {}, smoothed by a \
-                 Gaussian of {} cells{other}",
-                significant(cell),
-                significant(smooth)
-            )]
-        }
-        _ => Vec::new(),
     }
+    if faded > 0 {
+        let faded = counted(faded, "sharp edge fades", "sharp edges fade");
+        lines.push(format!("note: {faded} out within a patch and will be rounded"));
+    }
+    lines
+}
+
+/// How a scan became a field, in words.
+fn made_of_scan(&MeshScan { size: [x, y, z], cell, smooth }: &MeshScan) -> Vec<String> {
+    vec![format!(
+        "a scan, without sharp edges: the distance on a grid of {x} × {y} × {z} cells of {}, smoothed by a \
+         Gaussian of {} cells; --mesh-edges 30 keeps edges",
+        significant(cell),
+        significant(smooth)
+    )]
 }
 
 impl RemeshInfo {
@@ -104,32 +98,35 @@ impl RemeshInfo {
 
     /// The lines of the report before the run.
     pub(crate) fn lines(&self) -> Vec<String> {
+        let MeshInfo { name, vertices, faces, pieces, border_edges, fan_edges, mended, notes, part, scan } =
+            &self.mesh;
         let mut lines = vec![
-            format!("mesh: {}", self.name),
+            format!("mesh: {name}"),
             format!(
                 "{} with {} in {}",
-                counted(self.faces, "face", "faces"),
-                counted(self.vertices, "vertex", "vertices"),
-                counted(self.pieces, "piece", "pieces")
+                counted(*faces, "face", "faces"),
+                counted(*vertices, "vertex", "vertices"),
+                counted(*pieces, "piece", "pieces")
             ),
         ];
-        if !self.mended.is_empty() {
-            lines.push(format!("mended: {}", self.mended.join(", ")));
+        if !mended.is_empty() {
+            lines.push(format!("mended: {}", mended.join(", ")));
         }
-        if self.border_edges > 0 {
+        if scan.is_some() && *border_edges > 0 {
             lines.push(format!(
-                "holes with {} edges at their borders are closed smoothly",
-                grouped(self.border_edges)
+                "holes with {} edges at their borders are closed smoothly; --mesh-borders keep keeps them",
+                grouped(*border_edges)
             ));
         }
-        if self.fan_edges > 0 {
+        if *fan_edges > 0 {
             lines.push(format!(
                 "{} with more than two faces: inside is where the winding number is above a half",
-                counted(self.fan_edges, "edge", "edges")
+                counted(*fan_edges, "edge", "edges")
             ));
         }
-        lines.extend(self.made.iter().cloned());
-        lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
+        lines.extend(part.iter().flat_map(made_of_part));
+        lines.extend(scan.iter().flat_map(made_of_scan));
+        lines.extend(notes.iter().map(|note| format!("note: {note}")));
         lines
     }
 
@@ -156,7 +153,10 @@ impl RemeshInfo {
         if let Some(edges) = change.edges {
             lines.push(format!("sharp edges: largest distance from the new mesh {}", share(edges)));
         }
-        lines.push(format!("volume {}, area {}", both(change.volume), both(change.area)));
+        // An open surface has no volume.
+        let is_open = self.mesh.part.as_ref().is_some_and(|part| part.rim.is_some());
+        let volume = if is_open { String::new() } else { format!("volume {}, ", both(change.volume)) };
+        lines.push(format!("{volume}area {}", both(change.area)));
         lines
     }
 }

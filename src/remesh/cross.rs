@@ -8,6 +8,11 @@ use glam::DVec3;
 /// Faces in a slice of work.
 const AT_ONCE: usize = 32;
 
+/// Number of slices that [`MeshSolid::intersection`] takes.
+pub(super) fn slices(solid: &MeshSolid) -> u64 {
+    solid.mesh().faces().len().div_ceil(AT_ONCE) as u64
+}
+
 impl MeshSolid {
     /// A point where a side of one face pierces another face; none if no two faces intersect. Faces
     /// that share a corner are not compared. Found in slices of work.

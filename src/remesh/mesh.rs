@@ -9,7 +9,7 @@ use glam::DVec3;
 /// A triangle mesh, as a file or a program gives it.
 ///
 /// ```
-/// use marching_particles::{MeshEdges, Settings, TriangleMesh, sample};
+/// use marching_particles::{MeshOptions, Settings, TriangleMesh, sample};
 /// use marching_particles::glam::dvec3;
 ///
 /// // A tetrahedron, whose corners and edges are kept.
@@ -17,7 +17,7 @@ use glam::DVec3;
 /// let corners = corners.map(|[x, y, z]| dvec3(x.into(), y.into(), z.into()));
 /// let faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
 /// let solid = TriangleMesh::new(corners.to_vec(), faces.to_vec())?.solid()?;
-/// let sample = sample(solid.field(MeshEdges::Auto, None)?, &Settings::with_count(1_000))?;
+/// let sample = sample(solid.field(&MeshOptions::default())?, &Settings::with_count(1_000))?;
 /// assert_eq!(sample.mesh().topology.euler(), 2);
 /// assert_eq!(sample.report().proof.creases, Some(6));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -58,16 +58,21 @@ impl TriangleMesh {
         Ok(Self { vertices, faces, notes: Vec::new() })
     }
 
-    /// Reads a mesh from an STL, OBJ, PLY, OFF or GLB file; the content decides which. Polygons are
-    /// divided into triangles from their first corner.
+    /// Reads a mesh from an STL, OBJ, PLY, OFF, GLB or 3MF file; the content decides which.
+    /// Polygons are divided into triangles from their first corner.
     ///
     /// # Errors
     ///
     /// [`MeshError::File`] if the file cannot be read, [`MeshError::NoFaces`] if it holds only
     /// points, and the errors of [`TriangleMesh::new`].
     pub fn read(name: &str, bytes: Vec<u8>) -> Result<Self, MeshError> {
+        slices::complete(Self::reading(name, bytes))
+    }
+
+    /// [`TriangleMesh::read`] in slices.
+    pub(crate) async fn reading(name: &str, bytes: Vec<u8>) -> Result<Self, MeshError> {
         let reader = Reader::of_mesh(name, bytes)?;
-        let FileMesh { position, corners, faces, warnings, .. } = slices::complete(reader.read(|_| ()))?;
+        let FileMesh { position, corners, faces, warnings, .. } = reader.read(|_| ()).await?;
         let mut triangles = Vec::new();
         let mut from = 0;
         for to in faces {

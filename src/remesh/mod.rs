@@ -16,6 +16,7 @@ mod mesh;
 mod parts;
 mod patches;
 mod prepare;
+mod rim;
 mod rule;
 mod scan;
 mod sheet;
@@ -26,9 +27,10 @@ pub use mesh::TriangleMesh;
 pub use prepare::{MeshRepairs, MeshSolid};
 
 use crate::field::{Evaluator, Facts, Field, Frame, Jet, Piecewise};
-use crate::math::{grouped, significant};
+use crate::math::{counted, grouped, significant};
 use crate::pointcloud::read::ReadError;
-use crate::slices;
+use crate::slices::{self, pause};
+use core::f64::consts::PI;
 use core::ops::RangeInclusive;
 use glam::DVec3;
 use parts::PartsField;
@@ -88,20 +90,29 @@ pub enum MeshError {
     /// No face has an area.
     #[error("no face of the mesh has an area; check its vertices and its unit")]
     NoArea,
-    /// The mesh encloses nothing.
+    /// A closed mesh encloses nothing.
     #[error(
-        "the mesh is a sheet that encloses no volume, with {} edges at its border; give it a thickness \
-         first, or fit a surface to its points (--points, `fit_points`)",
-        grouped(*borders)
+        "the mesh is folded flat and encloses no volume; give it a thickness, or leave out one of its two \
+         sides"
     )]
-    Sheet {
-        /// Number of edges with one face.
-        borders: usize,
+    NoVolume,
+    /// An open surface has edges with more than two faces.
+    #[error(
+        "the surface is open and has {} with more than two faces, so that it has no two sides; separate the \
+         parts that meet there",
+        counted(*count, "edge", "edges")
+    )]
+    Fans {
+        /// Number of edges with more than two faces.
+        count: usize,
     },
+    /// An open surface has one side only.
+    #[error("the surface has only one side, as a Möbius strip has; cut it open along a line across it first")]
+    OneSided,
     /// Edges are to be kept, but the mesh is not closed.
     #[error(
-        "edges are kept of closed meshes, and this one has {} edges with one face and {} with more than \
-         two; close it first, or have it rounded (--mesh-edges none, `MeshEdges::Rounded`)",
+        "holes are closed by rounding, and this mesh has {} edges with one face and {} with more than two; \
+         keep its borders (--mesh-borders keep, `MeshOptions::borders`) or close it first to keep edges",
         grouped(*borders), grouped(*fans)
     )]
     Open {
@@ -112,16 +123,16 @@ pub enum MeshError {
     },
     /// Edges are to be kept, but faces of the mesh intersect.
     #[error(
-        "faces intersect near ({}, {}, {}), so that edges cannot be kept; unite the parts first, or have \
-         the mesh rounded (--mesh-edges none, `MeshEdges::Rounded`)",
+        "faces intersect near ({}, {}, {}), so that edges and borders cannot be kept; unite the parts \
+         first, or have a solid rounded (--mesh-edges none, `MeshEdges::Rounded`)",
         significant(place.x), significant(place.y), significant(place.z)
     )]
     Intersects {
         /// A point where two faces intersect.
         place: DVec3,
     },
-    /// The caller asks both to keep edges and to blur them.
-    #[error("a Gaussian is for scans: give its width or an angle of edges, and not both")]
+    /// The caller asks both to keep edges or borders and to blur them.
+    #[error("a Gaussian is for scans, whose edges and borders are not kept: give its width or ask for those")]
     Both,
     /// The angle of edges is out of its range.
     #[error("the angle of edges is {angle}°, and can be from 1° to 180°")]
@@ -160,6 +171,30 @@ pub enum MeshEdges {
     Rounded,
 }
 
+/// How a mesh becomes a field: see [`MeshSolid::field`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MeshOptions {
+    /// Which edges stay sharp.
+    pub edges: MeshEdges,
+    /// Whether the surface ends at the borders of the mesh, where an edge has one face. Otherwise
+    /// holes are closed smoothly. By default an open surface ends there, such as a leaf, a terrain
+    /// or half a sphere, and a solid has its holes closed.
+    pub borders: Option<bool>,
+    /// Width of a Gaussian in cells of a grid, 0 to 10; giving it treats the mesh as a scan. The
+    /// default is 0.7 to 3 cells, depending on the noise of the vertices, and at least 1.5 where
+    /// there are sharp edges.
+    pub smooth: Option<f64>,
+}
+
+impl MeshOptions {
+    /// With this choice of sharp edges.
+    #[must_use]
+    pub fn with_edges(edges: MeshEdges) -> Self {
+        Self { edges, ..Self::default() }
+    }
+}
+
 /// How a mesh became a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -174,6 +209,8 @@ pub enum MeshKind {
         corners: usize,
         /// Sharp edges that fade out within a patch, and are rounded.
         faded: usize,
+        /// The border at which the surface ends, if it does.
+        rim: Option<MeshRim>,
     },
     /// The signed distance on a grid.
     Scan {
@@ -184,6 +221,18 @@ pub enum MeshKind {
         /// Width of the Gaussian in cells.
         smooth: f64,
     },
+}
+
+/// The border of an open surface, which is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MeshRim {
+    /// Number of its edges.
+    pub edges: usize,
+    /// Number of its closed curves.
+    pub loops: usize,
+    /// Whether it zigzagged and was smoothed.
+    pub is_smoothed: bool,
 }
 
 /// The field of a mesh, from [`MeshSolid::field`]: near the surface it is the signed distance. It
@@ -204,69 +253,97 @@ enum Function {
 }
 
 impl MeshSolid {
-    /// Makes the field of the mesh. `smooth` is the width of a Gaussian in cells of a grid, 0 to
-    /// 10; giving it treats the mesh as a scan. The default is 0.7 to 3 cells, depending on the
-    /// noise of the vertices, and at least 1.5 where there are sharp edges.
+    /// Makes the field of the mesh.
     ///
     /// # Errors
     ///
     /// [`MeshError::Angle`] and [`MeshError::Width`] if a number is out of range,
-    /// [`MeshError::Open`] if edges are to be kept but the mesh is not closed, and
-    /// [`MeshError::Narrow`] if a whole scan is narrower than a cell.
-    pub fn field(&self, edges: MeshEdges, smooth: Option<f64>) -> Result<MeshField, MeshError> {
-        slices::in_pool(|| slices::complete(self.clone().field_in_slices(edges, smooth)))
+    /// [`MeshError::Open`] if edges are to be kept but holes closed, [`MeshError::Intersects`],
+    /// [`MeshError::Fans`] and [`MeshError::OneSided`] if the mesh does not allow to keep edges or
+    /// borders, and [`MeshError::Narrow`] if a whole scan is narrower than a cell.
+    pub fn field(&self, options: &MeshOptions) -> Result<MeshField, MeshError> {
+        slices::in_pool(|| slices::complete(self.clone().into_field(*options)))
     }
 
-    /// [`MeshSolid::field`] in slices of work.
-    pub(crate) async fn field_in_slices(
-        self,
-        edges: MeshEdges,
-        smooth: Option<f64>,
-    ) -> Result<MeshField, MeshError> {
+    /// Number of slices that [`MeshSolid::into_field`] is expected to take.
+    pub(crate) fn field_slices(&self) -> u64 {
+        cross::slices(self) + if self.is_sheet() { 0 } else { scan::slices(self) }
+    }
+
+    /// [`MeshSolid::field`] in slices.
+    pub(crate) async fn into_field(self, options: MeshOptions) -> Result<MeshField, MeshError> {
+        let MeshOptions { edges, borders, smooth } = options;
         if let Some(width) = smooth.filter(|width| !(0.0..=10.0).contains(width)) {
             return Err(MeshError::Width { width });
         }
-        let usual = DEFAULT_EDGE_ANGLE.to_radians();
-        let may_keep = edges != MeshEdges::Rounded && smooth.is_none() && self.is_closed();
+        if let MeshEdges::Angle(angle) = edges
+            && !EDGE_ANGLES.contains(&angle)
+        {
+            return Err(MeshError::Angle { angle });
+        }
+        let is_rimmed = borders.unwrap_or(self.is_sheet()) && self.border_edges() > 0;
+        let must_keep = is_rimmed || matches!(edges, MeshEdges::Angle(_));
+        if must_keep && smooth.is_some() {
+            return Err(MeshError::Both);
+        }
+        if must_keep && !is_rimmed && !self.is_closed() {
+            return Err(MeshError::Open { borders: self.border_edges(), fans: self.fan_edges() });
+        }
+        let may_keep = must_keep || edges == MeshEdges::Auto && smooth.is_none() && self.is_closed();
         let intersection = if may_keep { self.intersection().await } else { None };
-        let patches = match edges {
-            MeshEdges::Auto if may_keep && intersection.is_none() => {
-                Some(Patches::new(&self, usual)).filter(Patches::are_of_part)
-            }
-            MeshEdges::Auto | MeshEdges::Rounded => None,
-            MeshEdges::Angle(angle) => {
-                if !EDGE_ANGLES.contains(&angle) {
-                    return Err(MeshError::Angle { angle });
-                }
-                if smooth.is_some() {
-                    return Err(MeshError::Both);
-                }
-                if !self.is_closed() {
-                    return Err(MeshError::Open { borders: self.border_edges(), fans: self.fan_edges() });
-                }
-                if let Some(place) = intersection {
-                    return Err(MeshError::Intersects { place: self.origin + place });
-                }
-                Some(Patches::new(&self, angle.to_radians()))
-            }
+        if let Some(place) = intersection.filter(|_| must_keep) {
+            return Err(MeshError::Intersects { place: self.origin + place });
+        }
+        if !may_keep || intersection.is_some() {
+            return self.into_scan(smooth).await;
+        }
+        let faces = self.mesh.faces().len();
+        let angle = match edges {
+            MeshEdges::Angle(angle) => Some(angle),
+            MeshEdges::Rounded => None,
+            MeshEdges::Auto => Patches::new(&self, DEFAULT_EDGE_ANGLE.to_radians(), faces, PI)
+                .are_of_part()
+                .then_some(DEFAULT_EDGE_ANGLE),
         };
-        let (kind, function) = match patches.map(|patches| patches.with_corners(&self)) {
-            Some(patches) => {
-                let kind = MeshKind::Parts {
-                    patches: patches.count,
-                    edges: patches.creases.len(),
-                    corners: patches.corners.len(),
-                    faded: patches.faded,
-                };
-                (kind, Function::Parts(PartsField::new(&self, patches)))
-            }
-            None => {
-                let (field, Chosen { size, cell, width }) =
-                    ScanField::made(&self, patches::sharp_count(&self), smooth).await?;
-                (MeshKind::Scan { size, cell, smooth: width }, Function::Scan(Arc::new(field)))
-            }
+        if angle.is_none() && !is_rimmed {
+            return self.into_scan(smooth).await;
+        }
+        // No faces meet at more than 180°.
+        let angle = angle.unwrap_or(180.0).to_radians();
+        let walled = if is_rimmed { Some(self.walled()?) } else { None };
+        let solid = walled.as_ref().map_or(&self, |walled| &walled.solid);
+        pause().await;
+        // A border that was smoothed has no corners.
+        let is_smoothed = walled.as_ref().is_some_and(|walled| walled.is_smoothed);
+        let turn = if is_smoothed { PI } else { DEFAULT_EDGE_ANGLE.to_radians() };
+        let patches = Patches::new(solid, angle, faces, turn).with_corners(solid);
+        pause().await;
+        let of_surface =
+            |crease: &&patches::Crease| !crease.patches.iter().any(|&patch| patches.is_wall(patch));
+        let is_corner = |corner: &&patches::Corner| {
+            patches.creases.iter().filter(of_surface).filter(|own| own.ends.contains(&corner.vertex)).count()
+                > 2
         };
+        let kind = MeshKind::Parts {
+            patches: patches.count - patches.is_wall.iter().filter(|&&is_wall| is_wall).count(),
+            edges: patches.creases.iter().filter(of_surface).count(),
+            corners: patches.corners.iter().filter(is_corner).count(),
+            faded: patches.faded,
+            rim: walled.as_ref().map(|walled| MeshRim {
+                edges: self.border_edges(),
+                loops: self.border_loops(),
+                is_smoothed: walled.is_smoothed,
+            }),
+        };
+        let function = Function::Parts(PartsField::new(solid, patches, faces).await);
         Ok(MeshField { solid: self, kind, function })
+    }
+
+    async fn into_scan(self, smooth: Option<f64>) -> Result<MeshField, MeshError> {
+        let (field, Chosen { size, cell, width }) =
+            ScanField::new(&self, patches::sharp_count(&self), smooth).await?;
+        let kind = MeshKind::Scan { size, cell, smooth: width };
+        Ok(MeshField { solid: self, kind, function: Function::Scan(Arc::new(field)) })
     }
 }
 
@@ -288,11 +365,8 @@ impl MeshField {
         /// Points on each edge of the mesh.
         const EACH: u32 = 8;
         let Function::Parts(parts) = &self.function else { return Vec::new() };
-        let along = |[a, b]: &[DVec3; 2]| {
-            let (a, b) = (*a, *b);
-            (0..=EACH).map(move |k| a.lerp(b, f64::from(k) / f64::from(EACH)))
-        };
-        parts.segments().iter().flat_map(along).collect()
+        let along = |[a, b]: [DVec3; 2]| (0..=EACH).map(move |k| a.lerp(b, f64::from(k) / f64::from(EACH)));
+        parts.segments().flat_map(along).collect()
     }
 
     fn function(&self) -> &dyn Field {
@@ -330,5 +404,10 @@ impl Field for MeshField {
 
     fn is_smooth(&self) -> bool {
         self.function().is_smooth()
+    }
+
+    fn operand(&self) -> Option<Arc<dyn Field>> {
+        let Function::Parts(parts) = &self.function else { return None };
+        Some(Arc::new(parts.continued()?))
     }
 }

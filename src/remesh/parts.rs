@@ -25,8 +25,11 @@ struct Shared {
     tree: Arc<Tree>,
     patches: Patches,
     sheets: Vec<Sheet>,
-    /// The creases as segments.
+    /// The creases as segments, and whether each is an edge of the surface.
     segments: Vec<[DVec3; 2]>,
+    is_of_surface: Vec<bool>,
+    /// Number of faces that are not walls.
+    faces: usize,
     creases: Tree,
     bounds: Bounds,
     /// Largest height of the smooth surface above the faces.
@@ -37,6 +40,8 @@ struct Shared {
 #[derive(Clone)]
 pub(super) struct PartsField {
     shared: Arc<Shared>,
+    /// Whether an open surface continues beyond its border, along its tangents.
+    is_continued: bool,
     is_negative: bool,
     shift: f64,
 }
@@ -50,9 +55,13 @@ impl Debug for PartsField {
 impl Shared {
     /// The patch whose function gives f at `p`: `patch`, which holds the nearest point `q` of the
     /// mesh, unless a crease or a corner near `q` chooses another.
-    fn taken(&self, q: DVec3, patch: u32, p: DVec3) -> u32 {
+    fn taken(&self, q: DVec3, patch: u32, is_continued: bool, p: DVec3) -> u32 {
         let Patches { creases, corners, near, .. } = &self.patches;
-        let is_own = |k: u32| creases[k as usize].patches.contains(&patch);
+        let is_own = |k: u32| {
+            let patches = creases[k as usize].patches;
+            patches.contains(&patch)
+                && !(is_continued && patches.iter().any(|&own| self.patches.is_wall(own)))
+        };
         let Some(found) = self.creases.nearest_of(q, near * near, is_own) else { return patch };
         let crease = creases[found.triangle as usize];
         let mut value = |patch: u32| self.sheets[patch as usize].at(p).value;
@@ -66,9 +75,11 @@ impl Shared {
         rule.taken(&mut value).0
     }
 
-    fn label(&self, p: DVec3) -> u32 {
-        let nearest = self.tree.nearest(p);
-        self.taken(nearest.point, self.patches.of_face[nearest.triangle as usize], p)
+    fn label(&self, p: DVec3, is_continued: bool) -> u32 {
+        let faces = if is_continued { self.faces } else { usize::MAX };
+        let nearest = self.tree.nearest_of(p, f64::INFINITY, |face| (face as usize) < faces);
+        let Some(nearest) = nearest else { return 0 };
+        self.taken(nearest.point, self.patches.of_face[nearest.triangle as usize], is_continued, p)
     }
 
     /// Cells along the creases.
@@ -78,7 +89,8 @@ impl Shared {
         /// Most points along one edge of the mesh.
         const MOST: f64 = 10_000.0;
         let mut seen = BTreeSet::new();
-        for [a, b] in &self.segments {
+        let own = self.segments.iter().zip(&self.is_of_surface).filter(|own| *own.1);
+        for ([a, b], _) in own {
             let steps = libm::ceil(STEPS * a.distance(*b) / width).clamp(1.0, MOST);
             for k in 0..=steps as u32 {
                 let at = (a.lerp(*b, f64::from(k) / steps) - bounds.lo()) / width;
@@ -94,44 +106,63 @@ impl Shared {
 }
 
 impl PartsField {
-    /// The field of a closed mesh with these patches.
-    pub(super) fn new(solid: &MeshSolid, patches: Patches) -> Self {
+    /// The field of a mesh with these patches, of which those of the faces from number `walls` on
+    /// are walls.
+    pub(super) async fn new(solid: &MeshSolid, patches: Patches, walls: usize) -> Self {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
-        let bounds = mesh.bounds();
+        let own = mesh.faces()[..walls].iter().flat_map(|face| mesh.corners(face));
+        let bounds = Bounds::around(own);
         let diagonal = bounds.diagonal();
         let mut faces: Vec<Vec<u32>> = vec![Vec::new(); patches.count];
         for (face, &patch) in (0..).zip(&patches.of_face) {
             faces[patch as usize].push(face);
         }
         let of_face = &patches.of_face;
-        let sheets = (0..).zip(&faces).map(|(patch, faces)| {
+        let mut sheets = Vec::with_capacity(faces.len());
+        for (patch, faces) in (0..).zip(&faces) {
             let is_inner =
                 |edge: usize| edges.sides(edge).iter().all(|side| of_face[side.face as usize] == patch);
-            Sheet::new(mesh, edges, faces, is_inner, &patches.is_flat, diagonal, FLAT * diagonal)
-        });
-        let sheets: Vec<Sheet> = sheets.collect();
+            let is_flat = &patches.is_flat;
+            sheets.push(Sheet::new(mesh, edges, faces, is_inner, is_flat, diagonal, FLAT * diagonal));
+            pause().await;
+        }
         let place = |vertex: u32| mesh.vertices()[vertex as usize];
         let segments: Vec<[DVec3; 2]> = patches.creases.iter().map(|crease| crease.ends.map(place)).collect();
         let corners: Vec<[DVec3; 3]> = segments.iter().map(|&[a, b]| [a, b, b]).collect();
+        let is_of_surface = patches.creases.iter().map(|crease| patches.is_of_surface(crease)).collect();
         let shared = Shared {
             origin: solid.origin,
             tree: Arc::clone(&solid.tree),
             segments,
+            is_of_surface,
+            faces: walls,
             creases: Tree::new(&corners),
             bounds,
             bulge: sheets.iter().map(Sheet::bulge).fold(0.0, f64::max),
             patches,
             sheets,
         };
-        Self { shared: Arc::new(shared), is_negative: false, shift: 0.0 }
+        Self { shared: Arc::new(shared), is_continued: false, is_negative: false, shift: 0.0 }
     }
 
-    pub(super) fn segments(&self) -> &[[DVec3; 2]] {
-        &self.shared.segments
+    /// The edges of the surface.
+    pub(super) fn segments(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        let own = self.shared.segments.iter().zip(&self.shared.is_of_surface);
+        own.filter(|own| *own.1).map(|own| *own.0)
+    }
+
+    /// This field, continued beyond the border of an open surface; none for a closed one.
+    pub(super) fn continued(&self) -> Option<Self> {
+        let is_open = self.shared.faces < self.shared.patches.of_face.len();
+        (is_open && !self.is_continued).then(|| Self { is_continued: true, ..self.clone() })
     }
 
     fn has_pieces(&self) -> bool {
         !self.shared.patches.creases.is_empty()
+    }
+
+    fn label(&self, p: DVec3) -> u32 {
+        self.shared.label(p, self.is_continued)
     }
 
     /// f and its derivatives, or those of one patch's function, at a point relative to the origin
@@ -140,7 +171,7 @@ impl PartsField {
         if !p.is_finite() {
             return Slope { value: f64::NAN, gradient: DVec3::NAN, hessian: Sym3::splat(f64::NAN) };
         }
-        let label = label.unwrap_or_else(|| self.shared.label(p));
+        let label = label.unwrap_or_else(|| self.label(p));
         let own = self.shared.sheets[label as usize].at(p);
         let sign = if self.is_negative { -1.0 } else { 1.0 };
         Slope {
@@ -160,7 +191,7 @@ impl PartsField {
         // The edges of an offset surface are not those of the mesh.
         if self.shift != 0.0 {
             let write = |points: &[DVec3], labels: &mut [u32]| {
-                labels.iter_mut().zip(points).for_each(|(label, &p)| *label = self.shared.label(p - origin));
+                labels.iter_mut().zip(points).for_each(|(label, &p)| *label = self.label(p - origin));
             };
             return edges::seams_between(self, &write, bounds, width);
         }
@@ -215,6 +246,7 @@ impl Piecewise for PartsField {
         let own = if is_negative { -self.shift } else { self.shift };
         Arc::new(Self {
             shared: Arc::clone(&self.shared),
+            is_continued: self.is_continued,
             is_negative: self.is_negative ^ is_negative,
             shift: own + shift,
         })
@@ -292,20 +324,31 @@ impl Evaluator for PartsEvaluator<'_> {
 
 impl Pieces for PartsEvaluator<'_> {
     fn label(&mut self, p: DVec3) -> u32 {
-        self.field.shared.label(self.place(p))
+        self.field.label(self.place(p))
     }
 
     fn labels_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         let around = bounds.enlarged(0.25 * bounds.size().max_element() + self.field.room());
-        let shared = &self.field.shared;
+        let (shared, is_continued) = (&self.field.shared, self.field.is_continued);
         let mut found = Vec::new();
         shared.tree.in_box(&around.relative_to(shared.origin - self.frame.origin), |face| {
             let patch = shared.patches.of_face[face as usize];
+            if is_continued && shared.patches.is_wall(patch) {
+                return;
+            }
             if let Err(place) = found.binary_search(&patch) {
                 found.insert(place, patch);
             }
         });
         Some(found)
+    }
+
+    fn has_limits(&mut self) -> bool {
+        !self.field.is_continued && !self.field.shared.patches.is_wall.is_empty()
+    }
+
+    fn is_limit(&mut self, label: u32) -> bool {
+        !self.field.is_continued && self.field.shared.patches.is_wall(label)
     }
 
     fn piece(&mut self, label: u32) -> &mut dyn Evaluator {

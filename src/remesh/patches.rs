@@ -50,6 +50,8 @@ pub(super) struct Patches {
     pub(super) faded: usize,
     /// All sharp edges.
     pub(super) sharp: usize,
+    /// Whether each patch is a wall, which only limits the surface; empty without walls.
+    pub(super) is_wall: Vec<bool>,
     /// Among the vertices where exactly two creases meet, how many are turns: the creases bend by
     /// more than 45° there, or one is convex and the other concave. Then the number of all of them.
     pub(super) turns: [usize; 2],
@@ -58,20 +60,26 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    /// Divides a closed mesh into patches along edges whose faces meet at `angle` or more, in
-    /// radians.
-    pub(super) fn new(solid: &MeshSolid, angle: f64) -> Self {
+    /// Divides a mesh into patches along edges whose faces meet at `angle` or more, in radians, and
+    /// along the edges where the faces from number `walls` on meet the others; walls among each
+    /// other where the border turns by `turn` or more.
+    pub(super) fn new(solid: &MeshSolid, angle: f64, walls: usize, turn: f64) -> Self {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let normals: Vec<DVec3> = mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
         let mut is_sharp = sharp_edges(edges, &normals, angle);
         let planes = Planes::new(solid, &normals);
         planes.add_lone_bends(edges, &mut is_sharp);
         bridge(mesh, edges, &mut is_sharp);
+        sharpen_walls(edges, &normals, walls, turn, &mut is_sharp);
         let is_flat = planes.are_flat(solid, &is_sharp);
         let of_face = flood(normals.len(), edges, &is_sharp);
         let count = of_face.iter().max().map_or(0, |&last| last as usize + 1);
         let near = NEAR * mesh.bounds().diagonal();
         let mut found = Self { of_face, is_flat, count, near, ..Self::default() };
+        if walls < normals.len() {
+            found.is_wall = vec![false; count];
+            found.of_face[walls..].iter().for_each(|&patch| found.is_wall[patch as usize] = true);
+        }
         for edge in (0..edges.len()).filter(|&edge| is_sharp[edge]) {
             let [here, there] = edges.sides(edge) else { continue };
             found.sharp += 1;
@@ -94,6 +102,15 @@ impl Patches {
     pub(super) fn with_corners(self, solid: &MeshSolid) -> Self {
         let normals: Vec<DVec3> = solid.mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
         Self { corners: self.find_corners(solid, &normals), ..self }
+    }
+
+    pub(super) fn is_wall(&self, patch: u32) -> bool {
+        self.is_wall.get(patch as usize).is_some_and(|&is_wall| is_wall)
+    }
+
+    /// Whether a crease is an edge of the surface, and not of two walls.
+    pub(super) fn is_of_surface(&self, crease: &Crease) -> bool {
+        !crease.patches.iter().all(|&patch| self.is_wall(patch))
     }
 
     /// Whether the mesh is a part with edges: nearly all sharp edges separate two patches, there
@@ -180,7 +197,7 @@ impl Patches {
                 a.distance(b)
             });
             let shortest = lengths.fold(f64::INFINITY, f64::min);
-            let is_inside = |way: DVec3| solid.tree.winding(place + 0.1 * shortest * way) > 0.5;
+            let is_inside = |way: DVec3| solid.is_below(place + 0.1 * shortest * way);
             if let Some(rule) = Rule::around(&around, is_inside) {
                 let next =
                     places.nearest_of(place, self.near * self.near / (NEAR_CORNER * NEAR_CORNER), |k| {
@@ -249,6 +266,21 @@ pub(super) fn sharp_count(solid: &MeshSolid) -> usize {
     let is_sharp = sharp_edges(&solid.edges, &normals, super::DEFAULT_EDGE_ANGLE.to_radians());
     let has_two = |edge: usize| solid.edges.sides(edge).len() == 2;
     (0..is_sharp.len()).filter(|&edge| is_sharp[edge] && has_two(edge)).count()
+}
+
+/// Makes the edges sharp at which walls meet the surface, and of those between walls the ones where
+/// the border turns by `turn`. The two faces from number `walls` on that come next stand on one
+/// edge.
+fn sharpen_walls(edges: &Edges, normals: &[DVec3], walls: usize, turn: f64, is_sharp: &mut [bool]) {
+    let least = libm::cos(turn) + 1e-9;
+    for (edge, is_sharp) in is_sharp.iter_mut().enumerate() {
+        let [a, b] = edges.sides(edge) else { continue };
+        let [a, b] = [a, b].map(|side| side.face as usize);
+        if a.max(b) >= walls {
+            let is_one_wall = a.min(b) >= walls && (a - walls) / 2 == (b - walls) / 2;
+            *is_sharp = a.min(b) < walls || !is_one_wall && normals[a].dot(normals[b]) < least;
+        }
+    }
 }
 
 /// Whether the faces at each edge meet at `angle` or more.

@@ -5,6 +5,8 @@ use super::mesh::volume;
 use super::tree::Tree;
 use super::{MeshError, TriangleMesh};
 use crate::math::{Bounds, IndexTable, counted, hash};
+use crate::slices::{self, pause};
+use core::cell::OnceCell;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -57,8 +59,9 @@ pub struct MeshSolid {
     pub(super) tree: Arc<Tree>,
     repairs: MeshRepairs,
     borders: usize,
-    fans: usize,
+    pub(super) fans: usize,
     pieces: usize,
+    is_sheet: bool,
 }
 
 impl core::fmt::Debug for MeshSolid {
@@ -68,16 +71,22 @@ impl core::fmt::Debug for MeshSolid {
 }
 
 impl TriangleMesh {
-    /// The solid that the mesh encloses. Vertices at the same point are merged, faces without area
-    /// and duplicates are dropped, and faces are divided at vertices on their sides and oriented
-    /// alike. A piece of negative volume is reversed with the pieces inside it; so a piece oriented
-    /// against the one around it remains a cavity.
+    /// The solid that the mesh encloses, or the open surface that it is. Vertices at the same point
+    /// are merged, faces without area and duplicates are dropped, and faces are divided at vertices
+    /// on their sides and oriented alike. A piece of negative volume is reversed with the pieces
+    /// inside it; so a piece oriented against the one around it remains a cavity. The faces of an
+    /// open piece are turned to agree with most of them.
     ///
     /// # Errors
     ///
-    /// [`MeshError::NoArea`] if no face is left, [`MeshError::Sheet`] if the mesh encloses nothing,
-    /// and [`MeshError::Far`] if it lies more than 1,000 of its diagonals from the origin.
+    /// [`MeshError::NoArea`] if no face is left, [`MeshError::NoVolume`] if a closed mesh encloses
+    /// nothing, and [`MeshError::Far`] if it lies more than 1,000 of its diagonals from the origin.
     pub fn solid(&self) -> Result<MeshSolid, MeshError> {
+        slices::complete(self.mended())
+    }
+
+    /// [`TriangleMesh::solid`] in slices.
+    pub(crate) async fn mended(&self) -> Result<MeshSolid, MeshError> {
         /// Largest distance of a box from the origin that is sampled, in diagonals.
         const FAR: f64 = 1000.0;
         let mut repairs = MeshRepairs::default();
@@ -91,11 +100,13 @@ impl TriangleMesh {
         let width = SAME * near.bounds().diagonal();
         let (vertices, merged) = merged(&near, width);
         repairs.merged = merged.0;
+        pause().await;
         let mut faces = kept(&vertices, merged.1, width, &mut repairs);
         if faces.is_empty() {
             return Err(MeshError::NoArea);
         }
         for _ in 0..ROUNDS {
+            pause().await;
             let edges = Edges::new(&faces);
             let divided = divide(&vertices, &mut faces, &edges, width);
             if divided == 0 {
@@ -104,14 +115,18 @@ impl TriangleMesh {
             repairs.divided += divided;
             faces = kept(&vertices, faces, width, &mut repairs);
         }
+        pause().await;
         let edges = Edges::new(&faces);
         let pieces = orient(&vertices, &mut faces, &edges, &mut repairs.turned);
         let (borders, fans) = (edges.count(|sides| sides == 1), edges.count(|sides| sides > 2));
+        pause().await;
         // Reversing a face renumbers its sides.
         let edges = Edges::new(&faces);
         let mesh = TriangleMesh::of_parts(vertices, faces);
+        pause().await;
         let tree = Tree::new(&mesh.all_corners());
-        let solid = MeshSolid {
+        let is_sheet = is_sheet(&mesh, borders)?;
+        Ok(MeshSolid {
             mesh: Arc::new(mesh),
             origin,
             edges: Arc::new(edges),
@@ -120,9 +135,8 @@ impl TriangleMesh {
             borders,
             fans,
             pieces,
-        };
-        solid.check()?;
-        Ok(solid)
+            is_sheet,
+        })
     }
 }
 
@@ -170,27 +184,54 @@ impl MeshSolid {
         self.borders == 0 && self.fans == 0
     }
 
+    /// Whether the mesh is an open surface, such as a leaf, a terrain or half a sphere, and no
+    /// solid with holes.
+    #[must_use]
+    pub fn is_sheet(&self) -> bool {
+        self.is_sheet
+    }
+
+    /// Whether a point is on the inner side of the nearest face (J. A. Bærentzen & H. Aanæs,
+    /// "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
+    pub(super) fn is_below(&self, p: DVec3) -> bool {
+        let nearest = self.tree.nearest(p);
+        let mut normal = DVec3::ZERO;
+        self.tree.within(p, nearest.distance_sq * (1.0 + 1e-9), |found| {
+            let corners = self.mesh.corners(&self.mesh.faces()[found.triangle as usize]);
+            let [a, b, c] = corners;
+            let at = corners.iter().position(|&corner| corner == found.point);
+            let angle = at.map_or(1.0, |k| {
+                let [u, v] = [1, 2].map(|step| corners[(k + step) % 3] - corners[k]);
+                libm::atan2(u.cross(v).length(), u.dot(v))
+            });
+            normal += angle * (b - a).cross(c - a).normalize_or_zero();
+        });
+        normal.dot(p - nearest.point) < 0.0
+    }
+
     /// Whether both are copies of the same mesh.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.mesh, &other.mesh)
     }
+}
 
-    /// Refuses a mesh that encloses nothing: a sheet, however it is bent. The area vectors of a
-    /// closed mesh add up to zero; otherwise their sum is the area vector of the openings.
-    fn check(&self) -> Result<(), MeshError> {
-        /// Largest area of the openings of a solid, as a share of the mesh's area. Half a sphere,
-        /// whose opening has half its area, must not count as a solid.
-        const OPEN: f64 = 0.4;
-        /// Least volume, as a share of the volume of a ball with the same area.
-        const THIN: f64 = 1e-6;
-        let area = self.mesh.area();
-        let open: DVec3 = self.mesh.area_vectors().sum();
-        let ball = area * libm::sqrt(area) / libm::sqrt(36.0 * core::f64::consts::PI);
-        if open.length() > OPEN * area || self.mesh.volume().abs() < THIN * ball {
-            return Err(MeshError::Sheet { borders: self.borders });
-        }
-        Ok(())
+/// Largest area of the openings of a solid, as a share of the mesh's area. Half a sphere, whose
+/// opening has half its area, must not count as a solid. The area vectors of a closed mesh add up
+/// to zero; otherwise their sum is the area vector of the openings.
+const OPEN: f64 = 0.4;
+
+/// Whether a mesh with this number of border edges is an open surface, however it is bent.
+fn is_sheet(mesh: &TriangleMesh, borders: usize) -> Result<bool, MeshError> {
+    /// Least volume, as a share of the volume of a ball with the same area.
+    const THIN: f64 = 1e-6;
+    let area = mesh.area();
+    let open: DVec3 = mesh.area_vectors().sum();
+    let ball = area * libm::sqrt(area) / libm::sqrt(36.0 * core::f64::consts::PI);
+    let is_thin = mesh.volume().abs() < THIN * ball;
+    if is_thin && borders == 0 {
+        return Err(MeshError::NoVolume);
     }
+    Ok(borders > 0 && (is_thin || open.length() > OPEN * area))
 }
 
 /// Merges vertices closer than `width`. Returns the vertices in use, how many were merged, and the
@@ -309,6 +350,9 @@ struct Piece {
     corners: Vec<[u32; 3]>,
     bounds: Bounds,
     volume: f64,
+    is_open: bool,
+    /// The tree of its faces, made on first use.
+    tree: OnceCell<Tree>,
 }
 
 /// Orients faces consistently, and pieces so that they enclose a positive volume. Returns the
@@ -341,14 +385,31 @@ fn orient(vertices: &[DVec3], faces: &mut [[u32; 3]], edges: &Edges, turned: &mu
             own.iter().map(|&face| turned_if(is_turned[face as usize], faces[face as usize])).collect();
         let bounds = Bounds::around(corners.as_flattened().iter().map(|&corner| vertices[corner as usize]));
         let volume = volume(vertices, corners.iter());
-        pieces.push(Piece { faces: own, corners, bounds, volume });
+        let vectors = corners.iter().map(|corners| {
+            let [a, b, c] = corners.map(|corner| vertices[corner as usize]);
+            (b - a).cross(c - a)
+        });
+        let (open, area) = vectors.fold((DVec3::ZERO, 0.0), |sum, own| (sum.0 + own, sum.1 + own.length()));
+        pieces.push(Piece {
+            faces: own,
+            corners,
+            bounds,
+            volume,
+            is_open: open.length() > OPEN * area,
+            tree: OnceCell::new(),
+        });
     }
     for k in 0..pieces.len() {
         // A piece inside others is reversed with the largest of them.
         let around = (0..pieces.len()).filter(|&other| is_within(vertices, &pieces[k], &pieces[other]));
         let outermost =
             around.fold(k, |a, b| if pieces[b].volume.abs() > pieces[a].volume.abs() { b } else { a });
-        if pieces[outermost].volume < 0.0 {
+        let turned_ones = pieces[k].faces.iter().filter(|&&face| is_turned[face as usize]).count();
+        let is_wrong = match pieces[k].is_open {
+            true => 2 * turned_ones > pieces[k].faces.len(),
+            false => pieces[outermost].volume < 0.0,
+        };
+        if is_wrong {
             for &face in &pieces[k].faces {
                 is_turned[face as usize] ^= true;
             }
@@ -371,6 +432,7 @@ fn is_within(vertices: &[DVec3], piece: &Piece, other: &Piece) -> bool {
         return false;
     }
     let place = |&corner: &u32| vertices[corner as usize];
-    let corners: Vec<[DVec3; 3]> = other.corners.iter().map(|face| face.map(|c| place(&c))).collect();
-    Tree::new(&corners).winding(place(&piece.corners[0][0])).abs() > 0.5
+    let corners = || other.corners.iter().map(|face| face.map(|c| place(&c))).collect::<Vec<_>>();
+    let tree = other.tree.get_or_init(|| Tree::new(&corners()));
+    tree.winding(place(&piece.corners[0][0])).abs() > 0.5
 }

@@ -93,10 +93,15 @@ impl Grid {
     }
 }
 
+/// Number of slices that the distances take.
+pub(super) fn slices(solid: &MeshSolid) -> u64 {
+    2 * Grid::new(&solid.mesh).block_count().div_ceil(AT_ONCE) as u64
+}
+
 impl ScanField {
     /// The field, with a Gaussian of `width` cells; without it the noise of the vertices and the
     /// number of `sharp` edges decide. Made in slices of work.
-    pub(super) async fn made(
+    pub(super) async fn new(
         solid: &MeshSolid,
         sharp: usize,
         width: Option<f64>,

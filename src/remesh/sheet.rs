@@ -27,7 +27,7 @@ const TIP: f64 = 0.88;
 const REACH: f64 = 23.0;
 /// Length of the skirt divided by the diagonal of the mesh: two particle diameters of a coarse
 /// sampling.
-const SKIRT: f64 = 0.125;
+pub(super) const SKIRT: f64 = 0.125;
 /// Cosine of the largest angle between two border sides at a vertex whose skirts share a side.
 const ROUND: f64 = 0.7;
 
@@ -253,7 +253,8 @@ fn skirt(
             let (u, v) = (rims[before].away[1], rims[after].away[0]);
             let mean = (u + v).normalize_or(u);
             let is_reflex = u.cross(v).dot(normal) < 0.0;
-            let end = |way: DVec3| p + way * free_length(p, way, length, &tree, number as u32);
+            let is_other = |vertex: u32| vertex != number as u32;
+            let end = |way: DVec3| p + way * free_length(p, way, length, &tree, is_other);
             if is_reflex || u.dot(v) > ROUND {
                 (outer[before][1], outer[after][0]) = (Some(end(mean)), Some(end(mean)));
                 continue;
@@ -284,16 +285,23 @@ fn skirt(
     elements
 }
 
-/// The length of a skirt from `p` along `way`: the radius of the largest ball that touches the
-/// border there and holds no other vertex of it (J. Ma et al., "3D Medial Axis Point Approximation
-/// Using Nearest Neighbors and the Normal Field", 2012).
-fn free_length(p: DVec3, way: DVec3, length: f64, border: &Tree, own: u32) -> f64 {
+/// The room at `p` along `way`: the radius, at most `length`, of the largest ball that touches `p`
+/// and holds none of the triangles for which `is_other` holds (J. Ma et al., "3D Medial Axis Point
+/// Approximation Using Nearest Neighbors and the Normal Field", 2012). A vertex is such a triangle,
+/// too.
+pub(super) fn free_length(
+    p: DVec3,
+    way: DVec3,
+    length: f64,
+    others: &Tree,
+    is_other: impl Fn(u32) -> bool,
+) -> f64 {
     /// Rounds after which the ball is small enough.
     const ROUNDS: u32 = 12;
     let mut radius = length;
     for _ in 0..ROUNDS {
         let most = radius * radius * (1.0 - 1e-9);
-        let Some(found) = border.nearest_of(p + radius * way, most, |vertex| vertex != own) else { break };
+        let Some(found) = others.nearest_of(p + radius * way, most, &is_other) else { break };
         let to = found.point - p;
         let along = to.dot(way);
         if along <= 0.0 {

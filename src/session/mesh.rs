@@ -15,7 +15,7 @@ pub struct MeshInfo {
     pub faces: usize,
     /// Number of pieces that are not connected by edges of two faces.
     pub pieces: usize,
-    /// Number of edges of holes, which have one face.
+    /// Number of edges of borders, which have one face.
     pub border_edges: usize,
     /// Number of edges with more than two faces.
     pub fan_edges: usize,
@@ -41,6 +41,20 @@ pub struct MeshPart {
     pub corners: usize,
     /// Sharp edges that fade out within a patch, and are rounded.
     pub faded: usize,
+    /// The border at which the surface ends, if it does.
+    pub rim: Option<MeshBorder>,
+}
+
+/// The border of an open surface, which is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct MeshBorder {
+    /// Number of its edges.
+    pub edges: usize,
+    /// Number of its closed curves.
+    pub loops: usize,
+    /// Whether it zigzagged and was smoothed.
+    pub is_smoothed: bool,
 }
 
 /// The distance from a mesh on a grid.
@@ -64,11 +78,11 @@ pub(super) use with_meshes::{Comparison, MeshSurface};
 mod with_meshes {
     use super::super::opened::{Surface, Wanted};
     use super::super::{FieldAnswer, FieldRequest, Session, Source};
-    use super::{MeshInfo, MeshPart, MeshScan};
+    use super::{MeshBorder, MeshInfo, MeshPart, MeshScan};
     use crate::export::{MeshBuffers, Vertices};
     use crate::field::formula::Parameter;
     use crate::remesh::{
-        DEFAULT_EDGE_ANGLE, MeshChange, MeshEdges, MeshError, MeshField, MeshKind, MeshSolid, TriangleMesh,
+        MeshChange, MeshEdges, MeshError, MeshField, MeshKind, MeshOptions, MeshRim, MeshSolid, TriangleMesh,
     };
     use crate::session::{Fault, FaultKind};
     use crate::slices::{self, Work};
@@ -76,10 +90,7 @@ mod with_meshes {
     use std::sync::Arc;
 
     /// The names of the choices among the parameters of a request.
-    const NAMES: [&str; 2] = ["edges", "smooth"];
-    /// Largest edge angle on its slider, in degrees, and largest width of the Gaussian on its
-    /// slider.
-    const MOST: [f64; 2] = [90.0, 10.0];
+    const NAMES: [&str; 3] = ["edges", "borders", "smooth"];
 
     /// An opened triangle mesh, repaired once for all choices.
     #[derive(Clone, Debug)]
@@ -95,8 +106,7 @@ mod with_meshes {
         ///
         /// [`FaultKind::Mesh`] or [`FaultKind::NoSolid`].
         pub fn new(mesh: &TriangleMesh) -> Result<Self, Fault> {
-            let solid = mesh.solid().map_err(|error| fault_of(&error))?;
-            Ok(Self { solid, notes: mesh.notes().into() })
+            slices::complete(Self::mended(mesh)).map_err(|error| fault_of(&error))
         }
 
         /// Reads and repairs the mesh of a file: see [`TriangleMesh::read`].
@@ -105,7 +115,30 @@ mod with_meshes {
         ///
         /// [`FaultKind::Mesh`], [`FaultKind::NoFaces`] or [`FaultKind::NoSolid`].
         pub fn read(name: &str, bytes: Vec<u8>) -> Result<Self, Fault> {
-            Self::new(&TriangleMesh::read(name, bytes).map_err(|error| fault_of(&error))?)
+            slices::complete(Self::read_in_slices(name.to_owned(), bytes))
+        }
+
+        /// [`OpenedMesh::read`] in slices of work.
+        ///
+        /// # Errors
+        ///
+        /// As for [`OpenedMesh::read`].
+        pub async fn read_in_slices(name: String, bytes: Vec<u8>) -> Result<Self, Fault> {
+            let opened = async { Self::mended(&TriangleMesh::reading(&name, bytes).await?).await };
+            opened.await.map_err(|error| fault_of(&error))
+        }
+
+        async fn mended(mesh: &TriangleMesh) -> Result<Self, MeshError> {
+            Ok(Self { solid: mesh.mended().await?, notes: mesh.notes().into() })
+        }
+
+        /// Expected number of slices to make a field.
+        pub(in super::super) fn field_slices(&self) -> u64 {
+            self.solid.field_slices()
+        }
+
+        pub(in super::super) fn notes(&self) -> &[String] {
+            &self.notes
         }
 
         pub(in super::super) fn is_same(&self, other: &Self) -> bool {
@@ -117,7 +150,7 @@ mod with_meshes {
     fn fault_of(error: &MeshError) -> Fault {
         let kind = match error {
             MeshError::NoFaces => FaultKind::NoFaces,
-            MeshError::Sheet { .. } => FaultKind::NoSolid,
+            MeshError::NoVolume => FaultKind::NoSolid,
             _ => FaultKind::Mesh,
         };
         let text = error.to_string();
@@ -136,63 +169,65 @@ mod with_meshes {
     pub(in super::super) struct MeshSurface {
         pub(in super::super) mesh: OpenedMesh,
         pub(in super::super) field: MeshField,
-        edges: MeshEdges,
-        smooth: Option<f64>,
+        options: MeshOptions,
     }
 
     impl MeshSurface {
         /// The surface of a choice, unless it is the one `before`, made in slices of work.
         pub(in super::super) async fn made(
             mesh: OpenedMesh,
-            (edges, smooth): (MeshEdges, Option<f64>),
+            options: MeshOptions,
             before: Option<Self>,
         ) -> Result<Self, Fault> {
-            let is_same = |before: &Self| {
-                before.mesh.is_same(&mesh) && (before.edges, before.smooth) == (edges, smooth)
-            };
+            let is_same = |before: &Self| before.mesh.is_same(&mesh) && before.options == options;
             if let Some(before) = before.filter(is_same) {
                 return Ok(before);
             }
-            let field =
-                mesh.solid.clone().field_in_slices(edges, smooth).await.map_err(|error| fault_of(&error))?;
-            Ok(Self { mesh, field, edges, smooth })
+            let field = mesh.solid.clone().into_field(options).await.map_err(|error| fault_of(&error))?;
+            Ok(Self { mesh, field, options })
         }
 
         /// The named values that make the choice.
         pub(in super::super) fn choice(&self) -> impl Iterator<Item = (&'static str, f64)> {
-            let angle = match self.edges {
+            let angle = match self.options.edges {
                 MeshEdges::Auto => None,
                 MeshEdges::Angle(angle) => Some(angle),
                 MeshEdges::Rounded => Some(0.0),
             };
-            let values = [angle, self.smooth];
+            let borders = self.options.borders.map(|is_kept| f64::from(u8::from(is_kept)));
+            let values = [angle, borders, self.options.smooth];
             NAMES.into_iter().zip(values).filter_map(|(name, value)| Some((name, value?)))
         }
 
-        /// The slider of the surface: the edge angle of a part, or the Gaussian of a scan.
+        /// The slider of the surface: the Gaussian of a scan, or the angle of edges that was asked
+        /// for.
         pub(in super::super) fn parameters(&self) -> Vec<Parameter> {
-            let slider = |k: usize, label: &'static str, value: f64, min, step| Parameter {
-                name: NAMES[k].into(),
-                label: label.into(),
-                value,
-                min,
-                max: MOST[k].max(value),
-                step,
+            let slider = |name: &'static str, label: &'static str, value: f64, [min, max, step]: [f64; 3]| {
+                vec![Parameter {
+                    name: name.into(),
+                    label: label.into(),
+                    value,
+                    min,
+                    max: f64::max(max, value),
+                    step,
+                }]
             };
-            vec![match (self.field.kind(), self.edges) {
-                (MeshKind::Scan { smooth, .. }, _) => slider(1, "Smoothing", smooth, 0.0, 0.1),
-                (_, MeshEdges::Angle(angle)) => slider(0, "Edges from", angle, 1.0, 1.0),
-                _ => slider(0, "Edges from", DEFAULT_EDGE_ANGLE, 1.0, 1.0),
-            }]
+            match (self.field.kind(), self.options.edges) {
+                (MeshKind::Scan { smooth, .. }, _) => slider("smooth", "Smoothing", smooth, [0.0, 10.0, 0.1]),
+                (_, MeshEdges::Angle(angle)) => slider("edges", "Edges from", angle, [1.0, 90.0, 1.0]),
+                _ => Vec::new(),
+            }
         }
     }
 
     impl MeshInfo {
-        pub(in super::super) fn of(name: &str, surface: &MeshSurface) -> Self {
-            let solid = &surface.mesh.solid;
-            let (part, scan) = match surface.field.kind() {
-                MeshKind::Parts { patches, edges, corners, faded } => {
-                    (Some(MeshPart { patches, edges, corners, faded }), None)
+        /// The description of a field from a mesh of this name, of which the reader says `notes`.
+        pub fn new(name: &str, notes: &[String], field: &MeshField) -> Self {
+            let solid = field.solid();
+            let border = |MeshRim { edges, loops, is_smoothed, .. }| MeshBorder { edges, loops, is_smoothed };
+            let (part, scan) = match field.kind() {
+                MeshKind::Parts { patches, edges, corners, faded, rim } => {
+                    (Some(MeshPart { patches, edges, corners, faded, rim: rim.map(border) }), None)
                 }
                 MeshKind::Scan { size, cell, smooth } => (None, Some(MeshScan { size, cell, smooth })),
             };
@@ -204,22 +239,23 @@ mod with_meshes {
                 border_edges: solid.border_edges(),
                 fan_edges: solid.fan_edges(),
                 mended: solid.repairs().words(),
-                notes: surface.mesh.notes.to_vec(),
+                notes: notes.to_vec(),
                 part,
                 scan,
             }
         }
     }
 
-    /// The choice made by named values: an angle of 0 keeps no edges.
-    fn choice_of(values: &BTreeMap<String, f64>) -> (MeshEdges, Option<f64>) {
-        let [edges, smooth] = NAMES.map(|name| values.get(name).copied());
+    /// The choice made by named values: an angle of 0 keeps no edges, and `borders` is 1 to keep
+    /// them.
+    fn choice_of(values: &BTreeMap<String, f64>) -> MeshOptions {
+        let [edges, borders, smooth] = NAMES.map(|name| values.get(name).copied());
         let edges = match edges {
             None => MeshEdges::Auto,
             Some(0.0) => MeshEdges::Rounded,
             Some(angle) => MeshEdges::Angle(angle),
         };
-        (edges, smooth)
+        MeshOptions { edges, borders: borders.map(|value| value != 0.0), smooth }
     }
 
     /// The comparison of the new mesh with the old one.
@@ -232,8 +268,9 @@ mod with_meshes {
     impl Session {
         /// Changes the field to the surface of a triangle mesh. In the request, the parameter
         /// `edges` is the angle in degrees from which an edge stays sharp, 0 for no sharp edges,
-        /// and `smooth` is the width of the Gaussian for a scan: see [`MeshSolid::field`]. Formula,
-        /// box and later changes work as in [`Session::set_image`].
+        /// `borders` is 1 to end the surface at the borders and 0 to close holes, and `smooth` is
+        /// the width of the Gaussian for a scan: see [`MeshOptions`]. Formula, box and later
+        /// changes work as in [`Session::set_image`].
         ///
         /// # Errors
         ///
@@ -245,14 +282,12 @@ mod with_meshes {
             name: &str,
             request: &FieldRequest,
         ) -> Result<FieldAnswer, Fault> {
-            let (edges, smooth) = choice_of(&request.parameters);
-            self.set_opened(name, request, Wanted::Mesh(mesh.clone(), edges, smooth))
+            self.set_opened(name, request, Wanted::Mesh(mesh.clone(), choice_of(&request.parameters)))
         }
 
         /// [`Session::make_image`] for a mesh.
         pub fn make_mesh(&mut self, mesh: &OpenedMesh, request: &FieldRequest, budget: u32) -> f64 {
-            let (edges, smooth) = choice_of(&request.parameters);
-            self.make(Wanted::Mesh(mesh.clone(), edges, smooth), budget)
+            self.make(Wanted::Mesh(mesh.clone(), choice_of(&request.parameters)), budget)
         }
 
         /// Compares the mesh that [`Session::join`] has made with the opened one, with up to
@@ -316,9 +351,9 @@ mod tests {
         let mesh = OpenedMesh::read("cube.off", cube(false)).expect("a mesh");
         let answer = session.set_mesh(&mesh, "cube.off", &request(&[])).expect("a field");
         let info = answer.mesh.expect("a mesh");
-        assert_eq!(info.part, Some(MeshPart { patches: 6, edges: 12, corners: 8, faded: 0 }));
+        assert_eq!(info.part, Some(MeshPart { patches: 6, edges: 12, corners: 8, faded: 0, rim: None }));
         assert_eq!((info.faces, info.vertices, info.pieces), (12, 8, 1));
-        assert_eq!(answer.parameters[0].name, "edges");
+        assert!(answer.parameters.is_empty());
         // Nothing is compared before there is a new mesh.
         assert_eq!(session.compare(u32::MAX), Some(None));
         run(&mut session);
@@ -352,11 +387,12 @@ mod tests {
     fn what_is_no_solid_is_told_apart_and_the_surface_before_it_stays() {
         let points = b"OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n".to_vec();
         assert_eq!(OpenedMesh::read("p.off", points).expect_err("no faces").kind, FaultKind::NoFaces);
-        let sheet =
-            TriangleMesh::new(vec![glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y], vec![[0, 1, 2]]);
-        let fault = OpenedMesh::new(&sheet.expect("a mesh")).expect_err("a sheet");
+        // A tetrahedron whose corners lie in one plane.
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[x, y]| glam::dvec3(x, y, 0.0));
+        let faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+        let flat = TriangleMesh::new(corners.to_vec(), faces.to_vec());
+        let fault = OpenedMesh::new(&flat.expect("a mesh")).expect_err("no volume");
         assert_eq!(fault.kind, FaultKind::NoSolid);
-        assert!(!fault.message.contains("--") && fault.message.ends_with("to its points"), "{fault}");
 
         let mut session = Session::new();
         let mesh = OpenedMesh::read("open.off", cube(true)).expect("a mesh");

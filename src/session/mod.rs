@@ -22,7 +22,7 @@ pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 pub use image::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
 #[cfg(all(feature = "images", feature = "points"))]
 pub use mesh::OpenedMesh;
-pub use mesh::{MeshInfo, MeshPart, MeshScan};
+pub use mesh::{MeshBorder, MeshInfo, MeshPart, MeshScan};
 #[cfg(feature = "images")]
 pub use opened::OpenedSource;
 pub use record::{FileRecord, FileRequest};

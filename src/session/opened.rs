@@ -8,7 +8,7 @@ use crate::field::Field;
 use crate::field::formula::Parameter;
 use crate::image::{Image, ImageChoice, ImageSurface};
 #[cfg(feature = "points")]
-use crate::remesh::MeshEdges;
+use crate::remesh::MeshOptions;
 use crate::session::{Fault, FaultKind};
 use crate::slices::{self, Estimated};
 use std::sync::Arc;
@@ -120,7 +120,10 @@ impl OpenedSource {
                 FieldAnswer { image: Some(ImageInfo::of(&self.name, surface)), ..answer }
             }
             #[cfg(feature = "points")]
-            Surface::Mesh(surface) => FieldAnswer { mesh: Some(MeshInfo::of(&self.name, surface)), ..answer },
+            Surface::Mesh(surface) => FieldAnswer {
+                mesh: Some(MeshInfo::new(&self.name, surface.mesh.notes(), &surface.field)),
+                ..answer
+            },
         };
         let Some(formula) = &self.within else { return FieldAnswer { parameters, ..answer } };
         let own: Vec<&str> = self.surface.choice().into_iter().map(|(name, _)| name).collect();
@@ -144,7 +147,7 @@ pub(super) enum Wanted {
     Image(Image, ImageChoice),
     /// For the surface of a triangle mesh.
     #[cfg(feature = "points")]
-    Mesh(OpenedMesh, MeshEdges, Option<f64>),
+    Mesh(OpenedMesh, MeshOptions),
 }
 
 impl Wanted {
@@ -152,9 +155,7 @@ impl Wanted {
         match (self, other) {
             (Self::Image(image, choice), Self::Image(other, its)) => image.is_same(other) && choice == its,
             #[cfg(feature = "points")]
-            (Self::Mesh(mesh, edges, smooth), Self::Mesh(other, its_edges, its_smooth)) => {
-                mesh.is_same(other) && (edges, smooth) == (its_edges, its_smooth)
-            }
+            (Self::Mesh(mesh, options), Self::Mesh(other, its)) => mesh.is_same(other) && options == its,
             #[cfg(feature = "points")]
             _ => false,
         }
@@ -179,13 +180,13 @@ impl Wanted {
                 Estimated::new(Box::pin(work), expected)
             }
             #[cfg(feature = "points")]
-            Self::Mesh(mesh, edges, smooth) => {
+            Self::Mesh(mesh, options) => {
                 let before = match before {
                     Some(Surface::Mesh(before)) => Some(before),
                     _ => None,
                 };
-                let work = MeshSurface::made(mesh.clone(), (*edges, *smooth), before);
-                Estimated::new(Box::pin(async { work.await.map(Surface::Mesh) }), 1)
+                let work = MeshSurface::made(mesh.clone(), *options, before);
+                Estimated::new(Box::pin(async { work.await.map(Surface::Mesh) }), mesh.field_slices())
             }
         }
     }

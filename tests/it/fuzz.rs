@@ -94,6 +94,11 @@ fn mutated_images_are_read_or_refused() {
 }
 
 #[test]
+fn mutated_meshes_are_mended_or_refused() {
+    fuzz("mesh", 40_000, harness::mesh);
+}
+
+#[test]
 fn mutated_requests_end_with_finite_particles_or_are_refused() {
     seeds("request").iter().for_each(|seed| harness::whole_request(seed));
     fuzz("request", 4_000, harness::request);

@@ -5,8 +5,8 @@ use glam::{DVec3, dvec3};
 use marching_particles::field::{Field, Frame};
 use marching_particles::remesh::MAX_TRIANGLES;
 use marching_particles::{
-    Formula, MeshEdges, MeshError, MeshField, MeshKind, Sample, Search, Settings, TriangleMesh, Vertices,
-    difference, offset, sample,
+    Formula, MeshEdges, MeshError, MeshField, MeshKind, MeshOptions, Sample, Search, Settings, TriangleMesh,
+    Vertices, difference, offset, sample,
 };
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -19,7 +19,7 @@ fn solid_of((vertices, faces): &Shape) -> marching_particles::MeshSolid {
 }
 
 fn field_of(shape: &Shape) -> MeshField {
-    solid_of(shape).field(MeshEdges::Auto, None).expect("a field")
+    solid_of(shape).field(&MeshOptions::default()).expect("a field")
 }
 
 fn remeshed(shape: &Shape, count: u32, what: &str) -> (MeshField, Sample) {
@@ -304,8 +304,118 @@ fn hole_of_a_scan_is_closed_smoothly() {
     assert!(solid.border_edges() > 10 && !solid.is_closed());
     let (_, made) = remeshed(&shape, 4_000, "torus with a hole");
     check(&made, (0, 0, 2.0 * PI * PI * 0.16), 0.02, "torus with a hole");
-    let refused = solid.field(MeshEdges::Angle(30.0), None);
+    let refused = solid.field(&MeshOptions::with_edges(MeshEdges::Angle(30.0)));
     assert!(matches!(refused, Err(MeshError::Open { fans: 0, .. })), "{refused:?}");
+}
+
+/// The vertices of the borders of a new mesh, and the number of closed curves that they form.
+fn borders_of(made: &Sample) -> (Vec<DVec3>, usize) {
+    let new = made.buffers(Vertices::Joined);
+    let sides = new.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let sides: std::collections::BTreeSet<[u32; 2]> = sides.collect();
+    let mut next: std::collections::BTreeMap<u32, u32> =
+        sides.iter().filter(|&&[a, b]| !sides.contains(&[b, a])).map(|&[a, b]| (a, b)).collect();
+    let places = next.keys().map(|&k| new.positions[k as usize]).collect();
+    let mut loops = 0;
+    while let Some((start, mut at)) = next.pop_first() {
+        loops += 1;
+        while at != start {
+            at = next.remove(&at).expect("a border is a closed curve");
+        }
+    }
+    (places, loops)
+}
+
+/// The faces of a shape whose corners are all kept.
+fn part_of((vertices, faces): &Shape, is_kept: impl Fn(DVec3) -> bool) -> Shape {
+    let is_kept = |face: &&[u32; 3]| face.iter().all(|&corner| is_kept(vertices[corner as usize]));
+    (vertices.clone(), faces.iter().filter(is_kept).copied().collect())
+}
+
+/// A grid of n × n squares over −1 ≤ x, y ≤ 1 with these heights.
+fn terrain(n: u32, height: impl Fn(f64, f64) -> f64) -> Shape {
+    let at = |k: u32| 2.0 * f64::from(k) / f64::from(n) - 1.0;
+    let places = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j)));
+    let vertices = places.map(|(i, j)| dvec3(at(i), at(j), height(at(i), at(j)))).collect();
+    let squares = (0..n).flat_map(|j| (0..n).map(move |i| i + j * (n + 1)));
+    let faces = squares.flat_map(|k| [[k, k + 1, k + n + 2], [k, k + n + 2, k + n + 1]]);
+    (vertices, faces.collect())
+}
+
+fn sheet(shape: &Shape, count: u32, (what, loops, area): (&str, usize, f64)) -> (MeshField, Sample) {
+    let (field, made) = remeshed(shape, count, what);
+    let MeshKind::Parts { rim: Some(rim), .. } = field.kind() else { panic!("{what}: {:?}", field.kind()) };
+    assert_eq!((rim.loops, rim.edges), (loops, field.solid().border_edges()), "{what}");
+    let (places, found) = borders_of(&made);
+    assert_eq!(found, loops, "{what}: {:?}", made.report().warnings);
+    assert_eq!(made.mesh().topology.components.len(), 1, "{what}");
+    // The new border is that of the mesh.
+    let solid = field.solid();
+    let sides = solid.mesh().faces().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let sides: std::collections::BTreeSet<[u32; 2]> = sides.collect();
+    let border: Vec<[DVec3; 3]> = sides
+        .iter()
+        .filter(|&&[a, b]| !sides.contains(&[b, a]))
+        .map(|side| side.map(|k| solid.mesh().vertices()[k as usize]))
+        .map(|[a, b]| [a, b, b])
+        .collect();
+    let off = |p: &DVec3| border.iter().map(|side| distance(*p, *side)).fold(f64::INFINITY, f64::min);
+    let most = places.iter().map(off).fold(0.0, f64::max);
+    assert!(most < 2e-3, "{what}: {most}");
+    let new = made.buffers(Vertices::Joined);
+    let found = TriangleMesh::new(new.positions, new.triangles).expect("a mesh").area();
+    assert!((found / area - 1.0).abs() < 0.01, "{what}: {found} of {area}");
+    assert!((made.particles().count() as f64 / f64::from(count) - 1.0).abs() < 0.06, "{what}");
+    (field, made)
+}
+
+#[test]
+fn open_surfaces_end_at_their_borders() {
+    sheet(&terrain(12, |_, _| 0.3), 2_000, ("square", 1, 4.0));
+    let ball = |n: u32| {
+        // The upper half of a sphere: rings from the border to the pole.
+        let place = |i: u32, j: u32| {
+            let [u, v] = [f64::from(i) / f64::from(4 * n), f64::from(j) / f64::from(n)];
+            let (s, c) = libm::sincos(0.5 * PI * v);
+            dvec3(c * libm::cos(2.0 * PI * u), c * libm::sin(2.0 * PI * u), s)
+        };
+        let vertices = (0..=n).flat_map(|j| (0..4 * n).map(move |i| place(i, j))).collect();
+        let at = |i: u32, j: u32| i % (4 * n) + 4 * n * j;
+        let squares = (0..n).flat_map(|j| (0..4 * n).map(move |i| (i, j)));
+        let faces = squares.flat_map(|(i, j)| {
+            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        });
+        (vertices, faces.collect::<Vec<_>>())
+    };
+    let half = ball(16);
+    let (_, made) = sheet(&half, 3_000, ("half a sphere", 1, 2.0 * PI));
+    for p in made.buffers(Vertices::Joined).positions {
+        assert!((p.length() - 1.0).abs() < 1e-3 && p.z > -1e-3, "{p}");
+    }
+    sheet(&turned(&half), 2_000, ("half a sphere inside out", 1, 2.0 * PI));
+    let hills = terrain(40, |x, y| 0.2 * libm::sin(3.0 * x) * libm::cos(4.0 * y));
+    let area = TriangleMesh::new(hills.0.clone(), hills.1.clone()).expect("a mesh").area();
+    sheet(&hills, 3_000, ("terrain", 1, area));
+    let ring = part_of(&terrain(40, |_, _| 0.0), |p| p.abs().max_element() > 0.49);
+    sheet(&ring, 3_000, ("square with a square hole", 2, 3.0));
+}
+#[test]
+fn borders_of_solids_are_kept_if_asked_for() {
+    let mut open = cuboid([2.0, 2.0, 1.0]);
+    let is_top = |face: &[u32; 3]| face.iter().all(|&corner| open.0[corner as usize].z == 1.0);
+    open.1.retain(|face| !is_top(face));
+    let mut options = MeshOptions::default();
+    options.borders = Some(true);
+    let field = solid_of(&open).field(&options).expect("a field");
+    let MeshKind::Parts { patches: 5, edges: 8, corners: 4, .. } = field.kind() else {
+        panic!("{:?}", field.kind())
+    };
+    let made = sample(field, &Settings::with_count(3_000).refined()).expect("a sample");
+    let (places, loops) = borders_of(&made);
+    assert!(loops == 1 && places.iter().all(|p| (p.z - 1.0).abs() < 1e-5), "{loops}");
+    let new = made.buffers(Vertices::Joined);
+    let area = TriangleMesh::new(new.positions, new.triangles).expect("a mesh").area();
+    assert!((area - 12.0).abs() < 0.02, "{area}");
 }
 
 #[test]
@@ -372,7 +482,10 @@ fn boxes_far_from_the_origin_keep_their_edges_and_farther_ones_are_refused() {
 fn faces_that_intersect_or_touch_are_rounded() {
     let crossed = joined(cuboid([1.0; 3]), &moved(&cuboid([1.0; 3]), |p| p + DVec3::splat(0.6)));
     let solid = solid_of(&crossed);
-    assert!(matches!(solid.field(MeshEdges::Angle(30.0), None), Err(MeshError::Intersects { .. })));
+    assert!(matches!(
+        solid.field(&MeshOptions::with_edges(MeshEdges::Angle(30.0))),
+        Err(MeshError::Intersects { .. })
+    ));
     let (field, made) = remeshed(&crossed, 3_000, "boxes that cross");
     assert!(matches!(field.kind(), MeshKind::Scan { .. }));
     check(&made, (2, 0, 2.0 - 0.4_f64.powi(3)), 0.02, "boxes that cross");
@@ -380,7 +493,7 @@ fn faces_that_intersect_or_touch_are_rounded() {
     let touching = joined(cuboid([1.0; 3]), &moved(&cuboid([1.0; 3]), |p| p + dvec3(1.0, 1.0, 0.0)));
     let solid = solid_of(&touching);
     assert_eq!((solid.fan_edges(), solid.border_edges()), (1, 0));
-    let field = solid.field(MeshEdges::Auto, None).expect("a scan");
+    let field = solid.field(&MeshOptions::default()).expect("a scan");
     assert!(matches!(field.kind(), MeshKind::Scan { .. }));
 }
 
@@ -465,6 +578,33 @@ fn every_format_of_a_mesh_is_read() {
     }
 }
 
+/// A tetrahedron in inches, whose object is a component of another one that mirrors and moves it.
+#[test]
+fn objects_of_a_3mf_file_are_read_where_it_builds_them() {
+    for bytes in
+        [&include_bytes!("../../fuzz/seeds/mesh/3mf")[..], include_bytes!("../../fuzz/seeds/mesh/3mf-packed")]
+    {
+        let mesh = TriangleMesh::read("a.3mf", bytes.to_vec()).expect("a mesh");
+        assert_eq!(mesh.notes(), ["The unit of this file is the inch."]);
+        assert_eq!((mesh.vertices().len(), mesh.faces().len()), (4, 4));
+        let bounds = mesh.bounds();
+        assert_eq!((bounds.lo(), bounds.hi()), (dvec3(0.0, 0.0, 2.0), dvec3(1.0, 1.0, 3.0)));
+        // A mirrored object still faces outward.
+        assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-12, "{}", mesh.volume());
+        for cut in [10, bytes.len() / 2, bytes.len() - 30] {
+            let error = TriangleMesh::read("a.3mf", bytes[..cut].to_vec()).expect_err("cut off");
+            assert!(error.to_string().contains("cut off"), "{error}");
+        }
+    }
+    // What this program writes.
+    let made = sample(field_of(&bracket()), &Settings::with_count(400)).expect("a sample");
+    let path = std::env::temp_dir().join("marching-particles-bracket.3mf");
+    made.save(&path).expect("written");
+    let again = TriangleMesh::read("a.3mf", std::fs::read(&path).expect("the file")).expect("a mesh");
+    assert_eq!(again.faces().len(), made.buffers(Vertices::Joined).triangles.len());
+    assert!((again.volume() - 1.75).abs() < 1e-3 && again.notes().is_empty());
+}
+
 #[test]
 fn what_is_no_solid_is_refused_with_what_to_do() {
     let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
@@ -479,13 +619,142 @@ fn what_is_no_solid_is_refused_with_what_to_do() {
     assert!(refused(TriangleMesh::read("a.stl", Vec::new())).contains("the file is empty"));
     assert!(refused(TriangleMesh::read("a.xyz", b"0 0 0\n1 0 0\n".to_vec())).contains("only points"));
     let refused = |mesh: TriangleMesh| mesh.solid().err().map(|error| error.to_string()).unwrap_or_default();
-    assert!(refused(one()).contains("a sheet that encloses no volume, with 3 edges"));
+    assert!(one().solid().is_ok_and(|solid| solid.is_sheet()));
+    let fan = [[0, 1, 2], [0, 1, 3], [0, 1, 4]];
+    let places = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, -DVec3::Y];
+    let fan = TriangleMesh::new(places, fan.to_vec()).expect("a mesh").solid().expect("a sheet");
+    let message = |error: Option<MeshError>| error.map(|error| error.to_string()).unwrap_or_default();
+    assert!(message(fan.field(&MeshOptions::default()).err()).contains("1 edge with more than two faces"));
+    // A Möbius strip.
+    let place = |k: u32| {
+        let (turn, side) = (f64::from(k / 2) * PI / 8.0, if k.is_multiple_of(2) { 0.3 } else { -0.3 });
+        let radius = 1.0 + side * libm::cos(0.5 * turn);
+        dvec3(radius * libm::cos(turn), radius * libm::sin(turn), side * libm::sin(0.5 * turn))
+    };
+    let at = |k: u32| if k < 32 { k } else { (k - 32) ^ 1 };
+    let strip =
+        (0..16).flat_map(|k| [[2 * k, at(2 * k + 2), 2 * k + 1], [2 * k + 1, at(2 * k + 2), at(2 * k + 3)]]);
+    let strip = TriangleMesh::new((0..32).map(place).collect(), strip.collect()).expect("a mesh").solid();
+    assert_eq!(strip.expect("a sheet").field(&MeshOptions::default()).err(), Some(MeshError::OneSided));
     let flat = TriangleMesh::new(vec![DVec3::ZERO, DVec3::X, 2.0 * DVec3::X], vec![[0, 1, 2], [1, 1, 2]]);
     assert!(refused(flat.expect("a mesh")).contains("no face of the mesh has an area"));
     let solid = solid_of(&cuboid([1.0; 3]));
     for (edges, smooth) in
         [(MeshEdges::Angle(0.5), None), (MeshEdges::Auto, Some(11.0)), (MeshEdges::Angle(30.0), Some(1.0))]
     {
-        assert!(solid.field(edges, smooth).is_err(), "{edges:?} {smooth:?}");
+        let mut options = MeshOptions::with_edges(edges);
+        options.smooth = smooth;
+        assert!(solid.field(&options).is_err(), "{options:?}");
     }
+}
+
+/// A mesh with damages that random numbers choose.
+fn damaged(random: &mut Pcg32) -> (Shape, Vec<&'static str>) {
+    let mut below = |count: usize| random.next_u32() as usize % count;
+    let mut shape = match below(5) {
+        0 => cuboid([1.0, 2.0, 3.0]),
+        1 => bracket(),
+        2 => drilled(16),
+        3 => torus(12, 8, 0.0),
+        _ => terrain(6, |x, y| 0.3 * x * y),
+    };
+    let mut done = Vec::new();
+    for _ in 0..1 + below(3) {
+        let (count, vertices) = (shape.1.len(), shape.0.len());
+        let (face, vertex) = (below(count), below(vertices));
+        let what = match below(11) {
+            0 => {
+                shape.1[face].swap(0, 1);
+                "a flipped face"
+            }
+            1 => {
+                let [a, b, c] = shape.1[face];
+                shape.1.push([c, b, a]);
+                "a doubled face"
+            }
+            2 => {
+                shape.1.swap_remove(face);
+                "a hole"
+            }
+            3 => {
+                let [a, b, _] = shape.1[face];
+                shape.0.push(shape.0[a as usize].lerp(shape.0[b as usize], 0.5) + dvec3(0.4, 0.3, 0.2));
+                shape.1.push([a, b, vertices as u32]);
+                "a fan"
+            }
+            4 => {
+                let [a, b, c] = shape.1[face];
+                shape.0.push(shape.0[a as usize].midpoint(shape.0[b as usize]));
+                shape.1[face] = [a, vertices as u32, c];
+                shape.1.push([vertices as u32, b, c]);
+                "a T-junction"
+            }
+            5 => {
+                let [a, ..] = shape.1[face];
+                shape.0[vertex] = shape.0[a as usize];
+                "an edge without length"
+            }
+            6 => {
+                let by = [0.3, 1.0, 2.0][below(3)] * dvec3(1.0, 0.5, 0.25);
+                let other = moved(&shape, |p| p + by);
+                shape = joined(shape, &other);
+                "a copy aside"
+            }
+            7 => {
+                shape = turned(&shape);
+                "all faces turned"
+            }
+            8 => {
+                let by = [1e2, 1e4, 1e7][below(3)];
+                shape = moved(&shape, |p| p + by * dvec3(1.0, -2.0, 3.0));
+                "a place far away"
+            }
+            9 => {
+                shape.0[vertex] *= 3.0;
+                "a spike"
+            }
+            _ => {
+                shape = moved(&shape, |p| dvec3(p.x, p.y, 1e-9 * p.z));
+                "no thickness"
+            }
+        };
+        done.push(what);
+        if shape.1.is_empty() {
+            break;
+        }
+    }
+    (shape, done)
+}
+
+#[test]
+fn damaged_meshes_are_sampled_or_refused_in_words() {
+    let mut sampled = 0;
+    for seed in crate::cases::seeds(100) {
+        let mut random = Pcg32::seed_from_u64(seed);
+        let ((vertices, faces), what) = damaged(&mut random);
+        let edges =
+            [MeshEdges::Auto, MeshEdges::Angle(30.0), MeshEdges::Rounded][random.next_u32() as usize % 3];
+        let mut options = MeshOptions::with_edges(edges);
+        options.borders = [None, Some(true), Some(false)][random.next_u32() as usize % 3];
+        let mesh = TriangleMesh::new(vertices, faces);
+        let field = mesh.and_then(|mesh| mesh.solid()).and_then(|solid| solid.field(&options));
+        let field = match field {
+            Ok(field) => field,
+            Err(error) => {
+                assert!(error.to_string().len() > 20, "seed {seed}, {what:?}: {error:?}");
+                continue;
+            }
+        };
+        match sample(field.clone(), &Settings::with_count(400)) {
+            Ok(made) => {
+                let new = made.buffers(Vertices::Joined);
+                let bounds = field.solid().mesh().bounds();
+                let bounds = bounds.enlarged(0.5 * bounds.diagonal()).relative_to(-field.solid().origin());
+                assert!(new.positions.iter().all(|&p| bounds.holds(p)), "seed {seed}, {what:?}");
+                sampled += 1;
+            }
+            Err(error) => assert!(error.to_string().len() > 20, "seed {seed}, {what:?}: {error:?}"),
+        }
+    }
+    assert!(sampled > 0);
 }

@@ -109,6 +109,7 @@ const CHOICES = {
   darkInside: ['image'],
   closeBorder: ['image'],
   edges: ['mesh'],
+  borders: ['mesh'],
   smooth: ['image', 'mesh'],
 };
 
@@ -123,8 +124,8 @@ function angleOf(edges) {
  * @param {Options} options @param {'image' | 'mesh' | null} kind
  * @returns {SentField['parameters']}
  */
-export function valuesOf({ iso, label, smooth, darkInside, closeBorder, edges }, kind) {
-  for (const [name, value] of Object.entries({ iso, label, smooth, darkInside, closeBorder, edges })) {
+export function valuesOf({ iso, label, smooth, darkInside, closeBorder, edges, borders }, kind) {
+  for (const [name, value] of Object.entries({ iso, label, smooth, darkInside, closeBorder, edges, borders })) {
     if (value !== undefined && !(kind && CHOICES[name].includes(kind)))
       throw new InputError(
         `${name}: for ${CHOICES[name].map((of) => (of === 'image' ? 'an image' : 'a mesh')).join(' or ')}.`,
@@ -141,5 +142,6 @@ export function valuesOf({ iso, label, smooth, darkInside, closeBorder, edges },
   if (darkInside !== undefined && flag('darkInside', darkInside)) values.dark = 1;
   if (closeBorder !== undefined && flag('closeBorder', closeBorder)) values.closed = 1;
   if (edges !== undefined && edges !== 'auto') values.edges = angleOf(edges);
+  if (borders !== undefined) values.borders = flag('borders', borders) ? 1 : 0;
   return values;
 }

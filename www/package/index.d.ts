@@ -61,9 +61,14 @@ export interface Options {
   closeBorder?: boolean;
   /**
    * of a mesh: the angle in degrees above which an edge stays sharp; `auto`, the default, is 30° if such edges form
-   * curves on a closed mesh; `none` rounds all edges
+   * curves, unless holes are closed; `none` rounds all edges
    */
   edges?: number | 'auto' | 'none';
+  /**
+   * of a mesh: whether the surface ends at its borders, or holes are closed; by default it ends there if the mesh is an
+   * open surface, such as a leaf or a terrain
+   */
+  borders?: boolean;
   /** whether particles are smaller where the surface is more curved */
   adaptive?: boolean;
   /** how the radius follows from the curvature; default `chord_error` */
@@ -244,7 +249,7 @@ export interface ImageArray {
   name?: string;
 }
 /**
- * A triangle mesh to sample again: a file (STL, OBJ, PLY, OFF or GLB; its content decides), or arrays of three
+ * A triangle mesh to sample again: a file (STL, OBJ, PLY, OFF, GLB or 3MF; its content decides), or arrays of three
  * coordinates for each vertex and three vertices for each face.
  */
 export interface MeshSource {

@@ -125,6 +125,7 @@ const KNOWN = [
   'darkInside',
   'closeBorder',
   'edges',
+  'borders',
   'measure',
   'signal',
   'onProgress',

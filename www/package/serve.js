@@ -25,7 +25,7 @@ const FIRST_BUDGET = 64;
 const PROGRESS_MS = 50;
 /** The choices for an image and for a mesh, by their names in the core. */
 const OF_IMAGES = ['iso', 'label', 'smooth', 'dark', 'closed'];
-const OF_MESHES = ['edges', 'smooth'];
+const OF_MESHES = ['edges', 'borders', 'smooth'];
 /** Largest memory of a run and its report: half of what browsers allow a module. */
 const MEMORY_MB = 2048;
 const WITHOUT_SIMD =

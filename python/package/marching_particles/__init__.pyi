@@ -78,6 +78,7 @@ class TriangleMesh(Field):
         mesh: Any,
         *,
         edges: Union[Literal["auto"], float, None] = "auto",
+        borders: Union[bool, None] = None,
         smooth: Union[float, None] = None,
     ) -> None: ...
     @property
@@ -89,6 +90,8 @@ class TriangleMesh(Field):
     @property
     def border_edges(self) -> int: ...
     @property
+    def border_loops(self) -> int: ...
+    @property
     def notes(self) -> list[str]: ...
     def compare(self, mesh: Any) -> dict[str, Any]: ...
 
@@ -96,6 +99,7 @@ def remesh(
     mesh: Any,
     *,
     edges: Union[Literal["auto"], float, None] = "auto",
+    borders: Union[bool, None] = None,
     smooth: Union[float, None] = None,
     **options: Any,
 ) -> Sample: ...

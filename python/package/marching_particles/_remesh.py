@@ -12,19 +12,22 @@ from ._sample import sample
 
 
 class TriangleMesh(Field):
-    """The solid in a triangle mesh, to be given to :func:`sample`, :func:`difference` and the like.
+    """The surface of a triangle mesh, for :func:`sample`, :func:`difference` and the like.
 
     A closed mesh with sharp edges keeps them: f is made of a smooth function for each patch between
     edges. Of a scan, a smooth shape or a mesh with holes f is the distance on a grid, smoothed a
-    little; holes are closed. Before that, vertices at the same place are merged, faces without area
-    and doubled ones dropped, and faces turned to agree.
+    little; holes are closed. The surface of an open mesh, such as a leaf, a terrain or half a
+    sphere, ends at its border. Before that, vertices at the same place are merged, faces without
+    area and doubled ones dropped, and faces turned to agree.
 
     Args:
-        mesh: The path of a file, STL, OBJ, PLY, OFF or GLB; a mesh of trimesh or PyVista; or a pair
+        mesh: The path of a file, STL, OBJ, PLY, OFF, GLB or 3MF; a mesh of trimesh or PyVista; or a pair
             ``(vertices, faces)`` of arrays (n, 3) and (m, 3), in any unit of length, with faces
             counter-clockwise seen from outside.
         edges: ``"auto"``; the angle between faces from which on an edge stays sharp, in degrees, 1
             to 180; or None, to round all edges.
+        borders: Whether the surface ends at the borders of the mesh, or holes are closed. By default
+            it ends there if the mesh is an open surface; a solid has its holes closed.
         smooth: Width of a Gaussian in cells of the grid of a scan, 0 to 10: the mesh is taken for
             one if it is given. By default it is chosen by the noise.
 
@@ -32,28 +35,31 @@ class TriangleMesh(Field):
         bounds: The box of the surface, ``((x0, y0, z0), (x1, y1, z1))``.
         kind: ``"part"``, with edges, or ``"scan"``.
         repairs: Sentences on what was mended.
-        border_edges: Number of edges with one face, at the borders of holes.
+        border_edges: Number of edges with one face, at borders.
+        border_loops: Number of closed curves that the borders consist of.
         notes: Sentences on what of a file was left out.
 
     Raises:
         TypeError: If the mesh is none of these.
-        ValueError: If it has no area, encloses no volume, or its edges cannot be kept.
+        ValueError: If it has no area, is folded flat, or its edges or borders cannot be kept.
         OSError: If the file cannot be read.
     """
 
-    def __init__(self, mesh, *, edges="auto", smooth=None):
+    def __init__(self, mesh, *, edges="auto", borders=None, smooth=None):
         if edges is None:
             edges = "none"
         elif edges != "auto":
             edges = repr(float(numbers("edges", edges, (), '"auto", an angle or None')))
+        if borders not in (None, True, False):
+            raise TypeError(f"borders must be True, False or None, and not {borders!r}")
         smooth = None if smooth is None else float(numbers("smooth", smooth, (), "a number"))
         if isinstance(mesh, (str, os.PathLike)):
             path = os.fspath(mesh)
             with open(path, "rb") as file:
                 content = file.read()
-            self._take("mesh_file", os.path.basename(path), content, edges, smooth)
+            self._take("mesh_file", os.path.basename(path), content, edges, borders, smooth)
         else:
-            self._take("mesh", *map(np.array, _arrays(mesh)), edges, smooth)
+            self._take("mesh", *map(np.array, _arrays(mesh)), edges, borders, smooth)
 
     def _take(self, name, *given):
         field, self._mesh, known = getattr(_core.Field, name)(*given)
@@ -62,6 +68,7 @@ class TriangleMesh(Field):
         self.kind = known["kind"]
         self.repairs = known["repairs"]
         self.border_edges = known["border_edges"]
+        self.border_loops = known["border_loops"]
         self.notes = known["notes"]
 
     def __repr__(self):
@@ -90,7 +97,7 @@ def _taken(name, *given):
     return mesh
 
 
-def remesh(mesh, *, edges="auto", smooth=None, **options):
+def remesh(mesh, *, edges="auto", borders=None, smooth=None, **options):
     """Samples the surface of a triangle mesh anew, with even triangles.
 
     >>> import numpy as np
@@ -103,6 +110,7 @@ def remesh(mesh, *, edges="auto", smooth=None, **options):
     Args:
         mesh: What :class:`TriangleMesh` takes, or one of these.
         edges: See :class:`TriangleMesh`.
+        borders: See :class:`TriangleMesh`.
         smooth: See :class:`TriangleMesh`.
         options: The arguments of :func:`sample`, such as ``count``, ``spacing`` or ``adaptive``.
             ``method="refined"`` makes the triangles more even.
@@ -115,9 +123,9 @@ def remesh(mesh, *, edges="auto", smooth=None, **options):
         The errors of :class:`TriangleMesh` and of :func:`sample`.
     """
     if not isinstance(mesh, TriangleMesh):
-        mesh = TriangleMesh(mesh, edges=edges, smooth=smooth)
-    elif edges != "auto" or smooth is not None:
-        raise TypeError("edges and smooth belong to TriangleMesh: give them to it")
+        mesh = TriangleMesh(mesh, edges=edges, borders=borders, smooth=smooth)
+    elif edges != "auto" or borders is not None or smooth is not None:
+        raise TypeError("edges, borders and smooth belong to TriangleMesh: give them to it")
     result = sample(mesh, **options)
     result.change = mesh.compare(result.mesh())
     return result

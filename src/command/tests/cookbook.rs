@@ -136,10 +136,10 @@ fn programs() -> Vec<(Program, &'static str)> {
             let particles = sample(image.at(100.0)?, &Settings::with_count(3_000))?;
         },
         program! { particles:
-            use marching_particles::{MeshEdges, Settings, TriangleMesh, sample};
+            use marching_particles::{MeshOptions, Settings, TriangleMesh, sample};
 
             let solid = TriangleMesh::read("part.stl", std::fs::read("part.stl")?)?.solid()?;
-            let field = solid.field(MeshEdges::Auto, None)?;
+            let field = solid.field(&MeshOptions::default())?;
             let particles = sample(field, &Settings::with_count(3_000).refined())?;
             particles.save("even.stl")?;
         },

@@ -1,6 +1,8 @@
 //! Detection of a file's format by its content.
 
 use super::input::words;
+#[cfg(feature = "images")]
+use super::three_mf;
 use super::{ReadError, glb, off, pcd, xyz};
 use core::fmt;
 
@@ -21,6 +23,9 @@ pub enum InputFormat {
     Pcd,
     /// Binary glTF.
     Glb,
+    /// 3D Manufacturing Format, for which `images` has what unpacks it.
+    #[cfg(feature = "images")]
+    ThreeMf,
     /// Text with one point per line.
     Xyz,
 }
@@ -34,6 +39,8 @@ impl fmt::Display for InputFormat {
             Self::Off => "OFF",
             Self::Pcd => "PCD",
             Self::Glb => "GLB",
+            #[cfg(feature = "images")]
+            Self::ThreeMf => "3MF",
             Self::Xyz => "XYZ",
         })
     }
@@ -43,7 +50,7 @@ impl InputFormat {
     /// The extension of `name`, if it belongs to another format.
     pub(super) fn contradicting_extension(self, name: &str) -> Option<&'static str> {
         let extension = extension(name);
-        let known = ["ply", "obj", "stl", "off", "pcd", "glb", "xyz"]
+        let known = ["ply", "obj", "stl", "off", "pcd", "glb", "3mf", "xyz"]
             .into_iter()
             .find(|known| *known == extension)?;
         (!self.to_string().eq_ignore_ascii_case(known)).then_some(known)
@@ -103,6 +110,10 @@ const OBJ_WORDS: [&[u8]; 14] =
 pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     if bytes.strip_prefix(b"ply").is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace)) {
         return Ok(InputFormat::Ply);
+    }
+    #[cfg(feature = "images")]
+    if bytes.starts_with(three_mf::MAGIC) {
+        return Ok(InputFormat::ThreeMf);
     }
     if let Some(&(_, found, advice)) = KNOWN.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
         return Err(ReadError::Unknown { found, advice });

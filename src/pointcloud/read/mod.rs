@@ -1,5 +1,5 @@
-//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, GLB, PCD, and text with one point per
-//! line, detected by content.
+//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, GLB, 3MF, PCD, and text with one point
+//! per line, detected by content.
 //!
 //! A file is read in slices of work, so the caller can show progress. Its content is not trusted:
 //! the counts in a header are compared with the size of the file before memory is allocated, and
@@ -15,6 +15,8 @@ mod pcd;
 mod ply;
 mod ply_header;
 mod stl;
+#[cfg(feature = "images")]
+mod three_mf;
 mod xyz;
 
 pub use format::InputFormat;
@@ -85,7 +87,7 @@ pub enum ReadError {
         /// Number of bytes after the header.
         left: u64,
     },
-    /// A part of a glTF document is wrong.
+    /// A part of a glTF or 3MF document is wrong.
     #[error("{member}: {message}")]
     Member {
         /// Name of the part in the document, as `accessors[3]`.
@@ -190,6 +192,8 @@ impl Reader {
             InputFormat::Off => off::read(&mut input, &mut mesh).await,
             InputFormat::Pcd => pcd::read(&mut input, &mut mesh).await,
             InputFormat::Glb => glb::read(&mut input, &mut mesh).await,
+            #[cfg(feature = "images")]
+            InputFormat::ThreeMf => three_mf::read(&mut input, &mut mesh).await,
             InputFormat::Xyz => xyz::read(&mut input, &mut mesh).await,
         }?;
         mesh.leave_out_undefined()?;

@@ -64,12 +64,12 @@ pub struct Core {
     bytes: Vec<u8>,
     /// Of so many voxels along each axis of its image, the first is kept.
     step: usize,
-    /// The image that is opened, with its facts.
+    /// The file that is opened.
     opening: Option<Opening>,
 }
 
-/// The name of an image, and the work of opening it.
-type Opening = (String, Estimated<'static, Result<(Image, ImageFacts), Fault>>);
+/// The name of a file, and the work of opening it; of an image it also finds out the facts.
+type Opening = (String, Estimated<'static, Result<(Opened, Option<ImageFacts>), Fault>>);
 
 /// The contents of a file or an array.
 enum Opened {
@@ -205,28 +205,40 @@ impl Core {
                 image = image.coarser_in_slices(step).await.map_err(|error| fault(&error))?;
             }
             let facts = ImageFacts::of(&image).await;
-            Ok((image, facts))
+            Ok((Opened::Image(image), Some(facts)))
         };
         let expected = outline.map_or(0, |outline| outline.slices());
         self.opening = Some((name, Estimated::new(Box::pin(work), expected)));
     }
 
-    /// Does up to `budget` slices of the work of opening an image, for [`Core::set_opened`].
-    /// Returns the share that is done; at the end an `Answer` with `ImageFacts`. After an error the
-    /// last valid image stays.
-    #[wasm_bindgen(unchecked_return_type = "number | Answer<ImageFacts, Fault>")]
+    /// Begins to open the triangle mesh in the file whose bytes have been added, for
+    /// [`Core::set_opened`]. [`Core::open_step`] does the work.
+    pub fn open_mesh(&mut self, name: String) {
+        /// Bytes of a file that take about one slice to read and repair.
+        const BYTES: usize = 4_096;
+        let bytes = core::mem::take(&mut self.bytes);
+        let expected = bytes.len() / BYTES;
+        let mesh = OpenedMesh::read_in_slices(name.clone(), bytes);
+        let work = async { Ok((Opened::Mesh(mesh.await?), None)) };
+        self.opening = Some((name, Estimated::new(Box::pin(work), expected as u64)));
+    }
+
+    /// Does up to `budget` slices of the work of opening a file, for [`Core::set_opened`]. Returns
+    /// the share that is done; at the end an `Answer`, of an image with `ImageFacts`. After an
+    /// error the last valid file stays.
+    #[wasm_bindgen(unchecked_return_type = "number | Answer<ImageFacts | object, Fault>")]
     pub fn open_step(&mut self, budget: u32) -> JsValue {
         let nothing = || Fault::new(FaultKind::Request, &"no file has been begun");
         let Some((name, mut work)) = self.opening.take() else {
             return answer(Err::<ImageFacts, _>(nothing()));
         };
         let Some(opened) = work.advance(budget) else {
-            let share = work.fraction();
+            let share = work.fraction().min(0.999);
             self.opening = Some((name, work));
             return share.into();
         };
-        answer(opened.map(|(image, facts)| {
-            self.opened = Some((name, Opened::Image(image)));
+        answer(opened.map(|(opened, facts)| {
+            self.opened = Some((name, opened));
             facts
         }))
     }
@@ -247,14 +259,6 @@ impl Core {
         to_js(&image.map(|image| self.opened = Some((name, Opened::Image(image)))).err())
     }
 
-    /// Opens a triangle mesh file, for [`Core::set_opened`]. Returns the reason if that fails, else
-    /// null. After an error the previous file stays open.
-    #[wasm_bindgen(unchecked_return_type = "Fault | null")]
-    pub fn open_mesh(&mut self, name: String, bytes: Vec<u8>) -> JsValue {
-        let mesh = OpenedMesh::read(&name, bytes);
-        self.opened_mesh(name, mesh)
-    }
-
     /// Opens a triangle mesh from arrays: three coordinates per vertex, and three vertices per
     /// face. Returns the reason if that fails, else null.
     #[wasm_bindgen(unchecked_return_type = "Fault | null")]
@@ -263,10 +267,6 @@ impl Core {
         let mesh = TriangleMesh::new(points, faces.as_chunks().0.to_vec())
             .map_err(|error| Fault::new(FaultKind::Mesh, &error))
             .and_then(|mesh| OpenedMesh::new(&mesh));
-        self.opened_mesh(name, mesh)
-    }
-
-    fn opened_mesh(&mut self, name: String, mesh: Result<OpenedMesh, Fault>) -> JsValue {
         to_js(&mesh.map(|mesh| self.opened = Some((name, Opened::Mesh(mesh)))).err())
     }
 
@@ -293,9 +293,9 @@ impl Core {
     }
 
     /// Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
-    /// parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges` and `smooth`
-    /// of a mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
-    /// `FieldAnswer`. After an error the last valid field stays.
+    /// parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges`, `borders` and
+    /// `smooth` of a mesh), the box, and a formula with the surface as an operand. Returns an
+    /// `Answer` with `FieldAnswer`. After an error the last valid field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_opened(
         &mut self,

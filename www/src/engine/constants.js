@@ -26,6 +26,6 @@ export const MOST_PULLS = 32;
 /** File extensions of points for `openFile`, in the form of a file chooser's `accept` attribute. */
 export const FILE_TYPES = '.ply,.obj,.stl,.off,.glb,.pcd,.xyz,.pts,.csv,.txt,.asc';
 /** File extensions of triangle meshes, whose files may hold only points. */
-export const MESH_TYPES = '.stl,.obj,.ply,.off,.glb';
+export const MESH_TYPES = '.stl,.obj,.ply,.off,.glb,.3mf';
 /** File extensions of three-dimensional images and of the data files of their headers. */
 export const IMAGE_TYPES = '.nii,.nii.gz,.gz,.hdr,.img,.nrrd,.nhdr,.npy,.mha,.mhd,.raw,.zraw,.cube,.cub,.tif,.tiff';

@@ -1002,6 +1002,16 @@ export type MeshAnswer = {
   chips: Array<number>,
 };
 
+/** The border of an open surface, which is kept. */
+export type MeshBorder = {
+  /** Number of its edges. */
+  edges: number,
+  /** Number of its closed curves. */
+  loops: number,
+  /** Whether it zigzagged and was smoothed. */
+  is_smoothed: boolean,
+};
+
 /** The comparison of a mesh with the one that was sampled from it. */
 export type MeshChange = {
   /** Diagonal of the box of the old mesh. */
@@ -1051,7 +1061,7 @@ export type MeshInfo = {
   faces: number,
   /** Number of pieces that are not connected by edges of two faces. */
   pieces: number,
-  /** Number of edges of holes, which have one face. */
+  /** Number of edges of borders, which have one face. */
   border_edges: number,
   /** Number of edges with more than two faces. */
   fan_edges: number,
@@ -1071,10 +1081,22 @@ export type MeshPart = {
   patches: number,
   /** Edges of the mesh at which two patches meet. */
   edges: number,
-  /** Vertices where three or more of these edges meet. */
+  /** Vertices at which three or more of these meet. */
   corners: number,
   /** Sharp edges that fade out within a patch, and are rounded. */
   faded: number,
+  /** The border at which the surface ends, if it does. */
+  rim: MeshBorder | null,
+};
+
+/** How far the opening of a mesh is. */
+export type MeshProgress = {
+  /** What is done at present, in words. */
+  label: string,
+  /** Share of all work that is done. */
+  fraction: number,
+  /** Whether the mesh is open. */
+  done: boolean,
 };
 
 /** The distance from a mesh on a grid. */

@@ -59,10 +59,26 @@ fn a_mesh_is_an_operand_of_a_formula() {
 }
 
 #[test]
+fn an_open_box_keeps_its_border_if_asked_for() {
+    let open = cuboid("tub.obj", true);
+    let given = ["--mesh-in", &open, "--mesh-borders", "keep", "--count", "1500", "--mesh"];
+    let run_of = sample(&[&given[..], &[&file("tub.stl").display().to_string()]].concat());
+    assert_eq!(run_of["remesh"]["part"]["rim"]["loops"], 1);
+    assert_eq!((&run_of["mesh"]["borders"], &run_of["mesh"]["volume"]), (&1.into(), &().into()));
+    let area = run_of["remesh"]["change"]["area"][1].as_f64().expect("an area");
+    assert!((area - 16.0).abs() < 1e-6, "{area}");
+    let text = stdout(&run(&["sample", "--mesh-in", &open, "--mesh-borders", "keep", "--count", "500"]));
+    assert!(text.contains("an open surface, which ends at its border: 1 closed curve of 4 edges"), "{text}");
+}
+
+#[test]
 fn meshes_that_cannot_be_sampled_are_refused() {
     let open = cuboid("open.obj", true);
     let message = fails(2, &["sample", "--mesh-in", &open, "--mesh-edges", "30"]);
-    assert!(message.contains("4 edges with one face") && message.contains("--mesh-edges none"), "{message}");
+    assert!(
+        message.contains("4 edges with one face") && message.contains("--mesh-borders keep"),
+        "{message}"
+    );
     assert!(fails(2, &["sample", "--mesh-edges", "30"]).contains("--mesh-in"));
     assert!(fails(2, &["sample", "--mesh-in", &open, "--points", &open]).contains("cannot be used with"));
     let empty = file("empty.stl");

@@ -9,7 +9,7 @@ import { words } from '../bundle/load.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
- * @import { FaultKind, ImagePromise } from '../core-types.js'
+ * @import { FaultKind, ImageFacts, ImagePromise } from '../core-types.js'
  * @import { GivenFile, Opened, OpenEnv } from './types.js'
  */
 
@@ -79,26 +79,6 @@ async function readInto(core, file, tell, isOver) {
 }
 
 /**
- * Reads a whole file; returns null if it is cancelled.
- * @param {Blob} file @param {(share: number) => void} tell @param {() => boolean} isOver
- */
-async function bytesOf(file, tell, isOver) {
-  const bytes = new Uint8Array(file.size);
-  const reader = file.stream().getReader();
-  for (let at = 0; ; ) {
-    const { done, value } = await reader.read();
-    if (isOver()) {
-      void reader.cancel();
-      return null;
-    }
-    if (done) return bytes.subarray(0, at);
-    bytes.set(value, at);
-    at += value.length;
-    tell(at / file.size);
-  }
-}
-
-/**
  * Opens a file in the core, which then owns it. Returns null if it is cancelled.
  * @param {Core} core @param {GivenFile} given @param {OpenEnv} env
  * @returns {Promise<Opened>}
@@ -114,7 +94,8 @@ export async function openGiven(core, given, env) {
 }
 
 /** @param {Core} core @param {GivenFile} given @param {OpenEnv} env @returns {Promise<Opened>} */
-async function openedMesh(core, { name, file }, { tell, isOver, mostBytes }) {
+async function openedMesh(core, { name, file }, env) {
+  const { tell, isOver, mostBytes } = env;
   const needed = MESH_FACTOR * file.size;
   if (needed > mostBytes)
     throw new Refusal(
@@ -124,16 +105,14 @@ async function openedMesh(core, { name, file }, { tell, isOver, mostBytes }) {
     );
   const label = `Reading, about ${megabytes(needed)} MB of memory`;
   tell(label, 0);
-  const bytes = await bytesOf(file, (share) => tell(label, READ_SHARE * share), isOver);
-  if (!bytes) return null;
-  tell('Mending the mesh', READ_SHARE);
-  const fault = core.open_mesh(name, bytes);
-  if (fault) throw new Refusal(fault.kind, fault.message);
-  return { ok: true, facts: null };
+  if (!(await readInto(core, file, (share) => tell(label, READ_SHARE * share), isOver))) return null;
+  core.open_mesh(name);
+  return (await openedInSlices(core, 'Mending the mesh', env)) && { ok: true, facts: null };
 }
 
 /** @param {Core} core @param {GivenFile} given @param {OpenEnv} env @returns {Promise<Opened>} */
-async function openedImage(core, { name, file, beside, step = 1 }, { tell, isOver, mostBytes, nowMs, pause }) {
+async function openedImage(core, { name, file, beside, step = 1 }, env) {
+  const { tell, isOver, mostBytes } = env;
   tell('Reading', 0);
   const start = new Uint8Array(await file.slice(0, START_BYTES).arrayBuffer());
   const promise = core.image_promise(name, start);
@@ -157,6 +136,15 @@ async function openedImage(core, { name, file, beside, step = 1 }, { tell, isOve
   if (!(await readInto(core, file, (share) => tell(label, READ_SHARE * share), isOver))) return null;
   if (step > 1) core.keep_one_in(step);
   core.open_image(name, (wanted) => others.get(wanted));
+  const facts = /** @type {ImageFacts | null} */ (await openedInSlices(core, label, env));
+  return facts && { ok: true, facts };
+}
+
+/**
+ * Does the core's part of opening a file. Returns what it tells about it; null if it is cancelled.
+ * @param {Core} core @param {string} label @param {OpenEnv} env
+ */
+async function openedInSlices(core, label, { tell, isOver, nowMs, pause }) {
   for (let slices = FIRST_SLICES; ; ) {
     const before = nowMs();
     const answer = core.open_step(slices);
@@ -168,8 +156,8 @@ async function openedImage(core, { name, file, beside, step = 1 }, { tell, isOve
       core.begin_file(0);
       return null;
     }
-    if (!answer.ok) throw new Refusal('image', answer.error.message);
+    if (!answer.ok) throw new Refusal(answer.error.kind, answer.error.message);
     const { ok: _, ...facts } = answer;
-    return { ok: true, facts };
+    return facts;
   }
 }

@@ -12,7 +12,7 @@ const FORMATS = FILE_TYPES.split(',')
 const listOf = (words) => (words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} or ${words.at(-1)}`);
 
 /** The formats of triangle meshes. */
-export const MESH_FORMATS = 'STL, OBJ, PLY, OFF or GLB';
+export const MESH_FORMATS = 'STL, OBJ, PLY, OFF, GLB or 3MF';
 /** The formats of three-dimensional images. */
 export const IMAGE_FORMATS = 'NIfTI, NRRD, NPY, MetaImage, cube or TIFF';
 /** Extensions of image headers, whose voxels may be in another file. */

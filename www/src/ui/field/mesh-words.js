@@ -4,11 +4,12 @@ import { formatCount, formatShare, formatSignificant, plural } from '../format.j
 /** @import { MeshChange, MeshInfo } from '../../engine/types.js' */
 
 /** Describes the parts of a mesh. @param {MeshInfo} info */
-export function facesOf({ faces, vertices, pieces, border_edges, fan_edges }) {
+export function facesOf({ faces, vertices, pieces, border_edges, fan_edges, scan }) {
   const parts = [
     `${plural(faces, 'face')} with ${plural(vertices, 'vertex', 'vertices')} in ${plural(pieces, 'piece')}.`,
   ];
-  if (border_edges > 0) parts.push(`Holes with ${plural(border_edges, 'edge')} at their borders are closed smoothly.`);
+  if (scan && border_edges > 0)
+    parts.push(`Holes with ${plural(border_edges, 'edge')} at their borders are closed smoothly.`);
   if (fan_edges > 0)
     parts.push(`${plural(fan_edges, 'edge')} with more than two faces: inside is where faces wind around.`);
   return parts.join(' ');
@@ -21,8 +22,12 @@ export const mendedOf = ({ mended }) => (mended.length > 0 ? `Mended: ${mended.j
 export function madeOf({ part, scan }) {
   if (part) {
     const faded = part.faded > 0 ? ` ${plural(part.faded, 'sharp edge')} that end within a patch will be rounded.` : '';
-    const { patches, edges, corners } = part;
-    return `A part with edges: ${plural(patches, 'patch', 'patches')} between ${plural(edges, 'sharp edge')} of the mesh and ${plural(corners, 'corner')}.${faded}`;
+    const { patches, edges, corners, rim } = part;
+    const smoothed = rim?.is_smoothed ? ', which zigzags and was smoothed' : '';
+    const border = rim
+      ? ` The surface ends at its border, ${plural(rim.loops, 'closed curve')} of ${plural(rim.edges, 'edge')}${smoothed}.`
+      : '';
+    return `A part with edges: ${plural(patches, 'patch', 'patches')} between ${plural(edges, 'sharp edge')} of the mesh and ${plural(corners, 'corner')}.${border}${faded}`;
   }
   if (!scan) return '';
   const { size, cell, smooth } = scan;
@@ -35,9 +40,9 @@ const ROUNDING = 1e-9;
 
 /**
  * Returns the rows about the distance of the new mesh from the old one, with explanations.
- * @param {MeshChange} change
+ * @param {MeshChange} change @param {boolean} [isOpen]  an open surface has no volume
  */
-export function changeOf({ diagonal, to_new, to_old, edges, volume, area }) {
+export function changeOf({ diagonal, to_new, to_old, edges, volume, area }, isOpen = false) {
   const far = (/** @type {number} */ largest) =>
     largest < ROUNDING * diagonal
       ? 'none but rounding'
@@ -69,7 +74,7 @@ export function changeOf({ diagonal, to_new, to_old, edges, volume, area }) {
             help: 'Largest distance of the sharp edges of the old mesh from the new one.',
           },
         ]),
-    { label: 'Volume', value: both(volume), help: 'Of the old and of the new mesh.' },
+    ...(isOpen ? [] : [{ label: 'Volume', value: both(volume), help: 'Of the old and of the new mesh.' }]),
     { label: 'Area', value: both(area), help: 'Of the old and of the new mesh.' },
   ];
 }

@@ -12,7 +12,7 @@ import { changeOf, facesOf, madeOf, mendedOf } from './mesh-words.js';
 import { createTaken } from './taken.js';
 import { createWayBack } from './way-back.js';
 
-/** @import { Description, Engine } from '../../engine/types.js' */
+/** @import { Description, Engine, MeshInfo, ReadonlySignal } from '../../engine/types.js' */
 
 /** Angle of edges that is preset, in degrees. */
 const USUAL_ANGLE = 30;
@@ -34,11 +34,12 @@ export function createMesh(engine, description) {
     h('p', { class: 'quiet' }, () => info.value && facesOf(info.value)),
     h('p', { class: 'quiet', hidden: () => !info.value?.mended.length }, () => info.value && mendedOf(info.value)),
     createEdges(engine),
+    createBorders(engine, info),
     h('p', { class: 'quiet' }, () => info.value && madeOf(info.value)),
     h(
       'dl',
       { class: 'facts', hidden: () => change.value === null },
-      () => change.value && changeOf(change.value).map(row),
+      () => change.value && changeOf(change.value, Boolean(info.value?.part?.rim)).map(row),
     ),
     h('ul', { class: 'warnings', hidden: () => notes.value.length === 0 }, () => notes.value.map(createWarning)),
   );
@@ -67,11 +68,43 @@ function createEdges(engine) {
       { value: 'none', label: 'None' },
     ],
     value,
-    change: (chosen) => engine.chooseOfFile(chosen === 'auto' ? {} : { edges: chosen === 'angle' ? USUAL_ANGLE : 0 }),
+    change: (chosen) =>
+      choose(engine, chosen === 'auto' ? {} : { edges: chosen === 'angle' ? USUAL_ANGLE : 0 }, ['edges', 'smooth']),
   });
   explain(choice, () => ({
     title: 'Sharp edges',
-    text: 'Auto keeps edges of 30° and more where they form curves on a closed mesh. By angle keeps those whose faces meet at this angle or more. None takes the mesh for a scan and rounds all edges.',
+    text: 'Auto keeps edges of 30° and more where they form curves, unless holes are closed. By angle keeps those whose faces meet at this angle or more. None takes the mesh for a scan and rounds all edges.',
   }));
   return h('div', { class: 'chosen' }, h('span', { class: 'name' }, 'Sharp edges'), choice);
+}
+
+/**
+ * Creates the choice of what becomes of the borders of a mesh that has some.
+ * @param {Engine} engine @param {ReadonlySignal<MeshInfo | null>} info
+ */
+function createBorders(engine, info) {
+  const choice = createSegmented({
+    name: 'Borders',
+    choices: [
+      { value: 'kept', label: 'Kept' },
+      { value: 'closed', label: 'Closed' },
+    ],
+    value: () => (info.value?.part?.rim ? 'kept' : 'closed'),
+    change: (chosen) => choose(engine, { borders: chosen === 'kept' ? 1 : 0 }, ['borders', 'smooth']),
+  });
+  explain(choice, () => ({
+    title: 'Borders',
+    text: 'Kept ends the surface at the borders of the mesh, as for a leaf or a terrain. Closed makes a solid of it, whose holes are closed smoothly.',
+  }));
+  const hidden = () => !info.value?.border_edges;
+  return h('div', { class: 'chosen', hidden }, h('span', { class: 'name' }, 'Borders'), choice);
+}
+
+/**
+ * Sets choices of the mesh in the place of those with these names.
+ * @param {Engine} engine @param {Record<string, number>} chosen @param {string[]} names
+ */
+function choose(engine, chosen, names) {
+  const kept = Object.entries(engine.state.value.parameters).filter(([name]) => !names.includes(name));
+  engine.chooseOfFile({ ...Object.fromEntries(kept), ...chosen });
 }

@@ -89,6 +89,7 @@ export function fakeCore({
   let making = { wanted: '', left: 0 };
   const clock = { ms: 0 };
   const calls = /** @type {string[]} */ ([]);
+  let isFlat = false;
   let count = 0;
   let step = 0;
   let steps = relax_steps;
@@ -193,6 +194,7 @@ export function fakeCore({
     /** @param {number} budget @returns {number | Answer<ImageFacts, FieldFault>} */
     open_step(budget) {
       slicesLeft -= budget;
+      if (isFlat) return { ok: false, error: { ...refused('flat').error, kind: 'no_solid' } };
       return slicesLeft > 0 ? 1 - slicesLeft / openSlices : { ok: true, ...facts };
     },
     open_voxels: () => null,
@@ -206,10 +208,11 @@ export function fakeCore({
       making.left -= budget;
       return making.left > 0 ? 1 - making.left / makeSlices : 1;
     },
-    /** @param {string} name @param {Uint8Array} bytes @returns {FieldFault | null} */
-    open_mesh(name, bytes) {
-      calls.push(`open_mesh ${name} ${bytes.length}`);
-      return name.startsWith('flat') ? { ...refused('a sheet').error, kind: 'no_solid' } : null;
+    /** @param {string} name */
+    open_mesh(name) {
+      calls.push(`open_mesh ${name} ${added}`);
+      slicesLeft = openSlices;
+      isFlat = name.startsWith('flat');
     },
     section: () => new Float32Array(0),
     open_faces: () => null,

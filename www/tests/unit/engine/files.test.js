@@ -95,10 +95,17 @@ describe('a file of a mesh', () => {
   const meshOf = (/** @type {string} */ name) => ({ ...imageOf(name, 'faces'), as: /** @type {const} */ ('mesh') });
 
   test('is opened as one, and refused by kind if it encloses nothing', async () => {
-    const core = coreOf(fakeCore());
-    expect(await openGiven(core, meshOf('a.stl'), env)).toEqual({ ok: true, facts: null });
+    const core = coreOf(fakeCore({ openSlices: 100 }));
+    /** @type {number[]} */
+    const told = [];
+    const tell = (/** @type {string} */ _, /** @type {number} */ share) => void told.push(share);
+    expect(await openGiven(core, meshOf('a.stl'), { ...env, tell })).toEqual({ ok: true, facts: null });
+    expect(told.at(-1)).toBeGreaterThan(0.5);
+    let looks = 0;
+    expect(await openGiven(core, meshOf('a.stl'), { ...env, isOver: () => ++looks > 2 })).toBe(null);
+    core.calls.pop();
     expect(core.calls).toEqual(['open_mesh a.stl 5']);
-    expect(await openGiven(core, meshOf('flat.stl'), env)).toEqual({ ok: false, kind: 'no_solid', message: 'a sheet' });
+    expect(await openGiven(core, meshOf('flat.stl'), env)).toEqual({ ok: false, kind: 'no_solid', message: 'flat' });
   });
 
   test('is refused before it is read if its memory is not there', async () => {
@@ -116,10 +123,14 @@ describe('a file of a mesh', () => {
       border_edges: 8,
       fan_edges: 0,
       mended: ['3 vertices merged', '1 face turned'],
-      part: { patches: 6, edges: 12, corners: 8, faded: 1 },
+      part: { patches: 6, edges: 12, corners: 8, faded: 1, rim: null },
       scan: null,
     });
-    expect(facesOf(info)).toBe(
+    const rim = { edges: 8, loops: 2, is_smoothed: false };
+    expect(madeOf({ ...info, part: { ...info.part, rim } })).toContain(
+      'The surface ends at its border, 2 closed curves of 8 edges.',
+    );
+    expect(facesOf({ ...info, part: null, scan: {} })).toBe(
       '1,200 faces with 600 vertices in 1 piece. Holes with 8 edges at their borders are closed smoothly.',
     );
     expect(mendedOf(info)).toBe('Mended: 3 vertices merged, 1 face turned.');

@@ -1,0 +1,161 @@
+//! Open surfaces: walls below the border of a mesh, at which its surface ends.
+//!
+//! A *wall* stands on each edge of the border, across the surface, and reaches down from it. The
+//! sheet and its walls are a part with edges like any other, and inside is below the sheet and
+//! within the walls; but the walls only limit the surface. Their creases with the sheet are its
+//! rim.
+
+use super::edges::{Edges, Side, ends_of};
+use super::sheet::{SKIRT, free_length};
+use super::tree::Tree;
+use super::{MeshError, MeshSolid, TriangleMesh};
+use crate::math::Forest;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Depth of a wall divided by the radius of the largest ball that touches the sheet from below and
+/// holds none of it: the wall stays nearer to its edge than to other parts of the sheet.
+const DEPTH: f64 = 0.5;
+/// A border with a larger share of turns zigzags, as that of a cut scan does, and is smoothed.
+const TURNS: f64 = 0.25;
+/// Rounds in which a zigzagging border is smoothed; each halves a zigzag of single edges.
+const ROUNDS: usize = 30;
+
+/// A sheet with its walls.
+pub(super) struct Walled {
+    /// The faces of the sheet, then two for each edge of the border.
+    pub(super) solid: MeshSolid,
+    /// Whether the border zigzagged and was smoothed.
+    pub(super) is_smoothed: bool,
+}
+
+/// The borders of a mesh: its sides without a neighbour, and for each vertex on them the side that
+/// ends and the side that begins there.
+struct Borders {
+    ends: Vec<[u32; 2]>,
+    /// Vertices in ascending order, each with the vertices before and after it.
+    around: Vec<(u32, u32, u32)>,
+}
+
+impl Borders {
+    fn new(solid: &MeshSolid) -> Self {
+        let (mesh, edges) = (&*solid.mesh, &*solid.edges);
+        let lone = (0..edges.len()).filter_map(|edge| match edges.sides(edge) {
+            [side] => Some(ends_of(&mesh.faces()[side.face as usize], side.side)),
+            _ => None,
+        });
+        let ends: Vec<[u32; 2]> = lone.collect();
+        let mut before: Vec<(u32, u32)> = ends.iter().map(|&[a, b]| (b, a)).collect();
+        before.sort_unstable();
+        let mut around: Vec<(u32, u32, u32)> = Vec::with_capacity(ends.len());
+        for &[a, b] in &ends {
+            let at = before.partition_point(|own| own.0 < a);
+            if let Some(&(vertex, from)) = before.get(at)
+                && vertex == a
+            {
+                around.push((a, from, b));
+            }
+        }
+        around.sort_unstable();
+        // Where two borders touch at a vertex, the first one decides.
+        around.dedup_by_key(|own| own.0);
+        Self { ends, around }
+    }
+
+    /// Whether the border bends by more than 45° at many of its vertices.
+    fn zigzags(&self, vertices: &[DVec3]) -> bool {
+        const STRAIGHT: f64 = 0.7;
+        let place = |vertex: u32| vertices[vertex as usize];
+        let turns = self.around.iter().filter(|&&(at, from, to)| {
+            let [u, v] = [place(at) - place(from), place(to) - place(at)].map(DVec3::normalize_or_zero);
+            u.dot(v) < STRAIGHT
+        });
+        // Triangles and the like have few corners, which are kept.
+        const FEWEST: usize = 16;
+        self.around.len() >= FEWEST && turns.count() as f64 > TURNS * self.around.len() as f64
+    }
+
+    fn smooth(&self, vertices: &mut [DVec3]) {
+        for _ in 0..ROUNDS {
+            let mean = |&(at, from, to): &(u32, u32, u32)| {
+                let [a, b, c] = [from, at, to].map(|vertex| vertices[vertex as usize]);
+                0.25 * (a + 2.0 * b + c)
+            };
+            let means: Vec<DVec3> = self.around.iter().map(mean).collect();
+            self.around.iter().zip(means).for_each(|(own, mean)| vertices[own.0 as usize] = mean);
+        }
+    }
+}
+
+impl MeshSolid {
+    /// This sheet with walls below its border.
+    pub(super) fn walled(&self) -> Result<Walled, MeshError> {
+        if self.fans > 0 {
+            return Err(MeshError::Fans { count: self.fans });
+        }
+        if self.has_one_side() {
+            return Err(MeshError::OneSided);
+        }
+        let (mut vertices, mut faces) = (self.mesh.vertices().to_vec(), self.mesh.faces().to_vec());
+        let borders = Borders::new(self);
+        let is_smoothed = borders.zigzags(&vertices);
+        if is_smoothed {
+            borders.smooth(&mut vertices);
+        }
+        let mut corners: Vec<u32> = borders.ends.iter().map(|ends| ends[0]).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        let place_of = |vertex: u32| corners.partition_point(|&own| own < vertex);
+        // Normals at the border, weighted by the angles of the faces.
+        let mut normal = vec![DVec3::ZERO; corners.len()];
+        let mut length = vec![f64::INFINITY; corners.len()];
+        for face in &faces {
+            for k in 0..3 {
+                let at = place_of(face[k]);
+                if corners.get(at) == Some(&face[k]) {
+                    let [u, v] = [1, 2]
+                        .map(|step| vertices[face[(k + step) % 3] as usize] - vertices[face[k] as usize]);
+                    let across = u.cross(v);
+                    normal[at] += libm::atan2(across.length(), u.dot(v)) * across.normalize_or_zero();
+                    length[at] = length[at].min(u.length()).min(v.length());
+                }
+            }
+        }
+        let longest = SKIRT * self.mesh.bounds().diagonal();
+        let first = vertices.len() as u32;
+        for (at, &vertex) in corners.iter().enumerate() {
+            let (p, down) = (vertices[vertex as usize], -normal[at].normalize_or(DVec3::Z));
+            let is_other = |face: u32| !self.mesh.faces()[face as usize].contains(&vertex);
+            let depth = DEPTH * free_length(p, down, longest, &self.tree, is_other);
+            vertices.push(p + down * depth.max(0.1 * length[at]));
+        }
+        for &[a, b] in &borders.ends {
+            let [c, d] = [a, b].map(|end| first + place_of(end) as u32);
+            faces.extend([[b, a, c], [b, c, d]]);
+        }
+        let edges = Edges::new(&faces);
+        let mesh = TriangleMesh::of_parts(vertices, faces);
+        let tree = Tree::new(&mesh.all_corners());
+        let mut solid = self.clone();
+        (solid.mesh, solid.edges, solid.tree) = (Arc::new(mesh), Arc::new(edges), Arc::new(tree));
+        Ok(Walled { solid, is_smoothed })
+    }
+
+    /// Whether two faces disagree over an edge although all were oriented: as on a Möbius strip.
+    fn has_one_side(&self) -> bool {
+        let ends = |side: &Side| ends_of(&self.mesh.faces()[side.face as usize], side.side);
+        (0..self.edges.len()).any(|edge| matches!(self.edges.sides(edge), [a, b] if ends(a) == ends(b)))
+    }
+
+    /// The number of closed curves that the border consists of.
+    #[must_use]
+    pub fn border_loops(&self) -> usize {
+        let ends = Borders::new(self).ends;
+        let mut forest = Forest::new(self.mesh.vertices().len());
+        ends.iter().for_each(|&[a, b]| forest.join(a, b));
+        let mut roots: Vec<u32> = ends.iter().map(|&[a, _]| forest.find(a)).collect();
+        roots.sort_unstable();
+        roots.dedup();
+        roots.len()
+    }
+}
