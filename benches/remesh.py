@@ -180,11 +180,25 @@ PROGRAMS = {
 }
 
 
+STEPS = np.linspace(0, 1, 33)[:, None, None]
+
+
 def sharp(mesh, angle):
-    """Points along the edges whose faces meet at this angle or more, in degrees."""
-    ends = mesh.vertices[mesh.face_adjacency_edges[mesh.face_adjacency_angles > np.radians(angle)]]
-    steps = np.linspace(0, 1, 33)[:, None, None]
-    return (ends[:, 0] + steps * (ends[:, 1] - ends[:, 0])).reshape(-1, 3)
+    """The edges whose faces meet at this angle or more, in degrees, as pairs of points."""
+    return mesh.vertices[mesh.face_adjacency_edges[mesh.face_adjacency_angles > np.radians(angle)]]
+
+
+def along(ends):
+    return (ends[:, 0] + STEPS * (ends[:, 1] - ends[:, 0])).reshape(-1, 3)
+
+
+def off(points, ends):
+    """Distances of points from the nearest of these edges, found by points along them."""
+    near = cKDTree(along(ends)).query(points, k=8)[1] % len(ends)
+    first, way = ends[near, 0], ends[near, 1] - ends[near, 0]
+    share = ((points[:, None] - first) * way).sum(axis=2) / (way**2).sum(axis=2)
+    feet = first + np.clip(share, 0, 1)[..., None] * way
+    return np.linalg.norm(points[:, None] - feet, axis=2).min(axis=1)
 
 
 def far(old, new):
@@ -204,7 +218,7 @@ def row(old, points, faces):
     size = np.linalg.norm(np.ptp(old.vertices, axis=0))
     most, mean = (distance / size for distance in far(old, new))
     wanted, found = sharp(old, 30), sharp(new, 20)
-    lost = cKDTree(found).query(wanted)[0].max() / size if len(wanted) and len(found) else np.nan
+    lost = off(along(wanted), found).max() / size if len(wanted) and len(found) else np.nan
     degrees = np.degrees(new.face_angles)
     six = np.mean(np.bincount(np.asarray(new.edges_unique).ravel())[np.unique(new.faces)] == 6)
     return [

@@ -717,8 +717,8 @@ position: [number, number, number],
 normal: [number, number, number],
 /** Repulsion radius at `position`. */
 radius: number,
-/** Whether the particle stayed where it was, because the move leads out of the box, off the
-* surface or around a fold. */
+/** Whether the particle stayed where it was, because the move would have left the box or
+* the surface, or gone around a fold. */
 is_kept: boolean, } | { "type": "step_ends",
 /** Number of the step, from 1. */
 step: number,
@@ -832,7 +832,7 @@ export type LessonProgress = {
   particles: number,
   /** Evaluations of the field so far. */
   evaluations: number,
-  /** Pushes of one particle by another that were summed for a move so far. */
+  /** Pushes of one particle by another that were summed for moves so far. */
   interactions: number,
   /** Number of completed relaxation steps or iterations. */
   steps: number,
@@ -1502,7 +1502,7 @@ export type SurfaceEntry = {
   name: string,
   /** Formula of f, or an equation; f < 0 inside. */
   formula: string,
-  /** Box to sample. */
+  /** Box that is sampled. */
   bounds: Bounds,
   /** Algebraic degree; none for a transcendental surface. */
   degree: number | null,
