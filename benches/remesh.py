@@ -185,7 +185,8 @@ STEPS = np.linspace(0, 1, 33)[:, None, None]
 
 def sharp(mesh, angle):
     """The edges whose faces meet at this angle or more, in degrees, as pairs of points."""
-    return mesh.vertices[mesh.face_adjacency_edges[mesh.face_adjacency_angles > np.radians(angle)]]
+    is_sharp = mesh.face_adjacency_angles > np.radians(angle)
+    return mesh.vertices[mesh.face_adjacency_edges[is_sharp]]
 
 
 def along(ends):
@@ -206,10 +207,8 @@ def far(old, new):
     work = pymeshlab.MeshSet()
     for mesh in (old, new):
         work.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.faces))
-    both = [
-        work.get_hausdorff_distance(sampledmesh=k, targetmesh=1 - k, samplenum=100_000, samplevert=False, sampleface=True)
-        for k in (0, 1)
-    ]
+    points = {"samplenum": 100_000, "samplevert": False, "sampleface": True}
+    both = [work.get_hausdorff_distance(sampledmesh=k, targetmesh=1 - k, **points) for k in (0, 1)]
     return max(one["max"] for one in both), max(one["mean"] for one in both)
 
 
