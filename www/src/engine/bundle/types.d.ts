@@ -26,6 +26,14 @@ export interface WorkerEnv<Message> {
   pause: () => Promise<void>;
   post: (message: Message, transfer?: Transferable[]) => void;
 }
+/** The surroundings of work in slices. */
+export interface SliceEnv<Why extends string = never> {
+  nowMs: () => number;
+  /** lets the thread handle its messages */
+  pause: () => Promise<void>;
+  /** why the work ends before the next slice; null if it continues */
+  interrupt?: () => Why | null;
+}
 /** A timer of the browser, or a number of a test's clock. */
 export type Timer = ReturnType<typeof setTimeout> | number;
 export interface Timers {

@@ -4,7 +4,7 @@
  *
  * @module
  */
-import { nextBudget } from '../bundle/budget.js';
+import { inSlices } from '../bundle/slices.js';
 
 /**
  * @import { Lesson } from '../../wasm/lesson/lesson.js'
@@ -14,7 +14,6 @@ import { nextBudget } from '../bundle/budget.js';
 
 /** Target duration of a slice, so that questions are answered soon. */
 const SLICE_MS = 20;
-const FIRST_BUDGET = 64;
 
 /**
  * @param {Lesson} lesson
@@ -35,17 +34,19 @@ export function follow(lesson, env) {
         ? lesson.start_points(surface.system, surface.pulls, surface.bounds, settings)
         : lesson.start(surface, settings);
     if (!answer.ok) return env.post({ type: 'refused', id, error: answer.error });
-    for (let budget = FIRST_BUDGET; ; ) {
-      const before = env.nowMs();
+    /** @type {{progress: ReturnType<typeof step> | null}} */
+    const last = { progress: null };
+    const slice = (/** @type {number} */ budget) => {
       const progress = step(lesson, budget);
-      if (progress.is_done) return env.post({ type: 'ended', id, progress });
-      budget = nextBudget(budget, env.nowMs() - before, SLICE_MS);
+      last.progress = progress;
+      if (progress.is_done) return true;
       env.post({ type: 'progress', id, progress });
-      await env.pause();
-      // Another run has begun meanwhile and sends its own messages.
-      if (present !== id) return;
-      if (stops) return env.post({ type: 'ended', id, progress });
-    }
+      return undefined;
+    };
+    // Another run that has begun meanwhile sends its own messages.
+    const interrupt = () => (present === id ? (stops ? 'stopped' : null) : 'replaced');
+    const { why } = await inSlices(slice, { ...env, interrupt }, { targetMs: SLICE_MS });
+    if (why !== 'replaced' && last.progress) env.post({ type: 'ended', id, progress: last.progress });
   }
 
   return {

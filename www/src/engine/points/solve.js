@@ -4,8 +4,8 @@
  *
  * @module
  */
-import { nextBudget } from '../bundle/budget.js';
 import { words } from '../bundle/load.js';
+import { inSlices } from '../bundle/slices.js';
 
 /**
  * @import { WorkerEnv } from '../bundle/types.js'
@@ -14,7 +14,6 @@ import { words } from '../bundle/load.js';
 
 /** Target duration of a step. A model of a thousand centres then reports its progress about a hundred times. */
 const STEP_MS = 30;
-const FIRST_BUDGET = 64;
 /** Stands for the core's default number of centres; for a built-in model that is all points. */
 const USUAL_CENTRES = 0;
 
@@ -39,15 +38,14 @@ export async function solve(points, order, env) {
     begun = points.file(order.file.name, bytes, order.centres ?? USUAL_CENTRES);
   }
   if (!begun.ok) return refuse(begun.error);
-  for (let budget = FIRST_BUDGET; ; ) {
-    const before = env.nowMs();
+  const slice = (/** @type {number} */ budget) => {
     const step = points.step(budget);
-    if (!step.ok) return refuse(step.error);
-    if (step.done) break;
-    budget = nextBudget(budget, env.nowMs() - before, STEP_MS);
+    if (!step.ok || step.done) return step;
     env.post({ type: 'progress', label: step.label, fraction: step.fraction });
-    await env.pause();
-  }
+    return undefined;
+  };
+  const { made: last } = await inSlices(slice, env, { targetMs: STEP_MS });
+  if (last?.ok === false) return refuse(last.error);
   const info = points.info();
   if (!info.ok) return refuse(info.error);
   const [field, centres] = [points.field(), points.centres()];

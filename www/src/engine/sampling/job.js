@@ -5,7 +5,7 @@
  *
  * @module
  */
-import { nextBudget } from '../bundle/budget.js';
+import { inSlices } from '../bundle/slices.js';
 import { MEASURED } from '../columns.js';
 import { MOST_STEPPED } from '../constants.js';
 import { join } from './joining.js';
@@ -14,17 +14,10 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
- * @import { CoreProgress, CoreReport, Figures, Seconds } from '../types.js'
+ * @import { CoreProgress, Figures, Seconds } from '../types.js'
  * @import { ColumnsMessage, DoneMessage, Env, Job, Memory, Mesh } from './types.js'
  */
 
-/**
- * First budget of a phase, in work units; later budgets follow the speed of the machine. No unit
- * takes more than a third of a millisecond, so a Stop takes effect within 100 ms.
- */
-const FIRST_BUDGET = 256;
-/** First budget of a measurement or of the work before a start, in slices of up to a tenth of a millisecond. */
-const FIRST_SLICES = 32;
 /** Shortest interval between column messages: about one frame at 60 Hz. */
 const PICTURE_MS = 15;
 
@@ -112,6 +105,7 @@ class Execution {
 
   /** Time of the last message, a sign of life for the supervisor. */
   #beatMs;
+  #isHanding;
 
   /** @param {Core} core @param {Job} job @param {Env} env */
   constructor(core, job, env) {
@@ -131,6 +125,8 @@ class Execution {
     /** Positions before each relaxation step. @type {Float32Array[]} */
     this.past = [];
     this.#beatMs = 0;
+    /** Whether the refinement is passing a level on. */
+    this.#isHanding = false;
     /** What the page has: columns of `count` particles, and all final slot fates if `settled`. */
     this.sent = { count: 0, onCreases: 0, stale: false, slotsFrom: 0, settled: false, curved: 0, pictureMs: -Infinity };
   }
@@ -167,25 +163,19 @@ class Execution {
     const { core, job, env } = this;
     if (job.kind === 'relax') return true;
     memory.held = 0;
-    let slices = FIRST_SLICES;
     this.#beatMs = env.nowMs();
-    for (;;) {
-      const before = env.nowMs();
-      const answer = core.fit(job.settings, this.#isLive, slices);
-      const took = env.nowMs() - before;
-      this.seconds.seeding += took / 1000;
-      if (answer?.ok === false) return this.#end('refused', answer.error.message);
-      if (answer) {
-        env.post({ type: 'box', id: job.id, answer });
-        return true;
-      }
-      slices = nextBudget(slices, took);
-      this.#beat();
-      await env.pause();
-      const why = env.interrupt();
-      if (why === 'replace') return false;
-      if (why === 'stop') return this.#end('stopped');
-    }
+    const slice = (/** @type {number} */ budget) => core.fit(job.settings, this.#isLive, budget);
+    const { made: answer, why } = await inSlices(slice, env, {
+      after: (tookMs) => {
+        this.seconds.seeding += tookMs / 1000;
+        this.#beat();
+      },
+    });
+    if (why === 'stop') return this.#end('stopped');
+    if (!answer) return false;
+    if (!answer.ok) return this.#end('refused', answer.error.message);
+    env.post({ type: 'box', id: job.id, answer });
+    return true;
   }
 
   /** Regularly shows the supervisor that the worker is alive. */
@@ -268,49 +258,51 @@ class Execution {
    * @returns the last progress; null if another job replaces this one, or it ended without particles
    */
   async sample() {
-    const { core, job, env, sent } = this;
-    /** @type {Record<string, number>} */
-    const budgets = {};
+    const { core, job, env } = this;
     /** @type {CoreProgress['phase']} */
     let phase = job.kind === 'relax' ? 'relaxation' : 'seeding';
-    let wasHanding = false;
     core.plan(this.#isLive ? 'nothing' : 'front_too', env.mesh());
     this.#beatMs = env.nowMs();
-    for (;;) {
-      const why = env.interrupt();
-      if (why === 'replace') return null;
-      if (why === 'stop') {
-        const last = core.cancel();
-        // Particles that follow lie on no surface until they have reached the new one.
-        if (this.followed && sent.count === 0) {
-          this.progress = null;
-          this.done('stopped');
-          return null;
-        }
-        this.progress = last;
-        return last;
-      }
-      const budget = budgets[phase] ?? FIRST_BUDGET;
-      const before = env.nowMs();
-      const progress = core.step(budget);
-      this.progress = progress;
-      const took = env.nowMs() - before;
-      this.seconds[clockOf(phase)] += took / 1000;
-      budgets[phase] = nextBudget(budget, took);
-      sent.stale ||= progress.moved;
-      if (progress.phase === 'done') return progress;
-      this.#remember(progress);
-      // A refinement moves particles while it passes a level on, the coarse one first, and then works below them.
-      const isHanding = progress.phase === 'refinement' && progress.moved;
-      if (job.kind === 'sketch' && job.settings.method === 'refined' && wasHanding && !isHanding) {
-        this.progress = { ...core.cancel(), stop_reason: 'complete' };
-        return this.progress;
-      }
-      wasHanding = isHanding;
-      phase = progress.phase;
-      this.#tell(progress);
-      await env.pause();
-    }
+    const { made: last, why } = await inSlices((budget) => this.#step(budget), env, {
+      phase: () => phase,
+      after: (tookMs) => {
+        this.seconds[clockOf(phase)] += tookMs / 1000;
+        const { progress } = this;
+        if (!progress || progress.stop_reason) return;
+        phase = progress.phase;
+        this.#remember(progress);
+        this.#tell(progress);
+      },
+    });
+    return why === 'stop' ? this.#cancelled() : last;
+  }
+
+  /**
+   * Steps the core once. Returns the progress at the end of the run.
+   * @param {number} budget
+   */
+  #step(budget) {
+    const { core, job, sent } = this;
+    const wasHanding = this.#isHanding;
+    const progress = core.step(budget);
+    this.progress = progress;
+    sent.stale ||= progress.moved;
+    if (progress.phase === 'done') return progress;
+    // A refinement moves particles while it passes a level on, the coarse one first, and then works below them.
+    this.#isHanding = progress.phase === 'refinement' && progress.moved;
+    if (job.kind !== 'sketch' || job.settings.method !== 'refined' || !wasHanding || this.#isHanding) return undefined;
+    this.progress = { ...core.cancel(), stop_reason: 'complete' };
+    return this.progress;
+  }
+
+  /** Ends a stopped run. Returns its last progress; null if it leaves no particles. */
+  #cancelled() {
+    const last = this.core.cancel();
+    // Particles that follow lie on no surface until they have reached the new one.
+    const isNowhere = this.followed && this.sent.count === 0;
+    this.progress = isNowhere ? null : last;
+    if (isNowhere) this.done('stopped');
+    return this.progress;
   }
 
   /** Keeps the positions before each relaxation step. @param {CoreProgress} progress */
@@ -424,20 +416,21 @@ class Execution {
   /** Measures the particles slice by slice and posts the report, unless another job replaces this one. */
   async measure() {
     const { core, env, seconds } = this;
-    let slices = FIRST_SLICES;
-    /** @type {CoreReport | undefined} */
-    let report;
-    do {
-      await env.pause();
-      if (env.interrupt() === 'replace') return;
+    const unlessReplaced = {
+      ...env,
+      interrupt: () => (env.interrupt() === 'replace' ? /** @type {const} */ ('replace') : null),
+    };
+    const slice = (/** @type {number} */ budget) => {
       this.#sendCurvature();
-      const before = env.nowMs();
-      report = core.measure('front_too', slices);
-      const took = env.nowMs() - before;
-      seconds.quality += took / 1000;
-      slices = nextBudget(slices, took);
-      this.#tellAfter('quality');
-    } while (report === undefined);
+      return core.measure('front_too', budget);
+    };
+    const { made: report } = await inSlices(slice, unlessReplaced, {
+      after: (tookMs) => {
+        seconds.quality += tookMs / 1000;
+        this.#tellAfter('quality');
+      },
+    });
+    if (!report) return;
     const figures = /** @type {Figures} */ (Object.fromEntries(MEASURED.map((name) => [name, core[name]()])));
     env.post(
       { type: 'report', id: this.job.id, report: { ...report, seconds: { ...seconds } }, ...figures },

@@ -3,43 +3,28 @@
  *
  * @module
  */
-import { nextBudget } from '../bundle/budget.js';
+import { inSlices } from '../bundle/slices.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
  * @import { FileRequest } from '../types.js'
- * @import { Mesh, SliceEnv } from './types.js'
+ * @import { Mesh, AfterEnv } from './types.js'
  */
-
-/** First budget, in slices of up to a tenth of a millisecond. */
-const FIRST_BUDGET = 32;
 
 /**
  * Returns the result of the slices; null if they are stopped, or another job replaces the particles, before the end.
  * @template T
- * @param {(budget: number) => T | undefined} step  does this many slices; undefined before the end
- * @param {SliceEnv} env
- * @param {() => void} [tell]  called after each step; by default it shows that the worker is alive
+ * @param {(budget: number) => T | undefined} slice
+ * @param {AfterEnv} env
+ * @param {() => void} [after]  called after each slice; by default it shows that the worker is alive
  * @returns {Promise<T | null>}
  */
-async function inSlices(step, env, tell = beats(env)) {
-  const { nowMs, pause, interrupt } = env;
-  let budget = FIRST_BUDGET;
-  for (;;) {
-    await pause();
-    if (interrupt() !== null) return null;
-    const before = nowMs();
-    const made = step(budget);
-    if (made !== undefined) return made;
-    budget = nextBudget(budget, nowMs() - before);
-    tell();
-  }
-}
+const made = async (slice, env, after = beats(env)) => (await inSlices(slice, env, { after })).made;
 
 /**
  * Returns a function that regularly shows the supervisor that the worker is alive.
- * @param {SliceEnv} env
+ * @param {AfterEnv} env
  */
 function beats({ nowMs, post }) {
   let beatMs = nowMs();
@@ -53,12 +38,12 @@ function beats({ nowMs, post }) {
 /**
  * Returns the mesh; null if it is stopped, or another job replaces the particles, before the mesh is complete.
  * @param {Pick<Core, 'join' | 'triangles'>} core
- * @param {SliceEnv} env
- * @param {() => void} [tell]  called after each step
+ * @param {AfterEnv} env
+ * @param {() => void} [after]  called after each slice
  * @returns {Promise<Mesh | null>}
  */
-export async function join(core, env, tell) {
-  const about = await inSlices((budget) => core.join(budget), env, tell);
+export async function join(core, env, after) {
+  const about = await made((budget) => core.join(budget), env, after);
   return about && { about, triangles: core.triangles() };
 }
 
@@ -66,10 +51,10 @@ export async function join(core, env, tell) {
  * Returns the distance of the complete mesh from the opened one, null inside if no mesh was opened; or null if it is
  * stopped, or another job replaces the particles, before the end.
  * @param {Pick<Core, 'compare'>} core
- * @param {SliceEnv} env
+ * @param {AfterEnv} env
  */
 export const compared = (core, env) =>
-  inSlices((budget) => {
+  made((budget) => {
     const change = core.compare(budget);
     return change === undefined ? undefined : { change };
   }, env);
@@ -82,10 +67,10 @@ const VALUE = 'value';
  * particles, before the end.
  * @param {Pick<Core, 'add_value' | 'added_value'>} core
  * @param {string} formula
- * @param {SliceEnv} env
+ * @param {AfterEnv} env
  */
 export async function valued(core, formula, env) {
-  const added = await inSlices((budget) => {
+  const added = await made((budget) => {
     const fault = core.add_value(VALUE, formula, budget);
     return fault === undefined ? undefined : { fault };
   }, env);
@@ -99,10 +84,10 @@ export async function valued(core, formula, env) {
  * replaces the particles, before the end.
  * @param {Pick<Core, 'mesh_file'>} core
  * @param {Partial<FileRequest>} request
- * @param {SliceEnv} env
+ * @param {AfterEnv} env
  */
 export const write = (core, request, env) =>
-  inSlices((budget) => {
+  made((budget) => {
     const bytes = core.mesh_file(request, budget);
     return bytes === undefined ? undefined : { bytes };
   }, env);

@@ -6,9 +6,9 @@
 import { batch } from '@preact/signals-core';
 import { MOST_STEPPED } from '../constants.js';
 import { change, idleProgress } from '../store.js';
+import { timingOf } from './cost.js';
 import { refusalNotice } from './faults.js';
 import { KINDS } from './kinds.js';
-import { timingOf } from './pace.js';
 
 /**
  * @import { Store } from '../store.js'

@@ -7,6 +7,7 @@
 import { batch } from '@preact/signals-core';
 import { clampSettings } from '../share/state.js';
 import { SamplingClient } from './client.js';
+import { Pace, sizeOfRun } from './cost.js';
 import { loadNotice, restartNotice, safeModeNotice } from './faults.js';
 import { KINDS } from './kinds.js';
 import {
@@ -23,7 +24,6 @@ import {
   tookPlace,
   trialOf,
 } from './ledger.js';
-import { Pace, sizeOfRun } from './pace.js';
 import { Presenter } from './presenter.js';
 
 /**

@@ -30,24 +30,21 @@ import type {
 
 export type Mesh = import('../types.js').Mesh;
 /**
- * Samples the field from the start, in the way of its kind (see `kinds.js`). The particles may follow the surface
- * instead in the settings of `following`; with `isClosed` they are then neither born nor die. A job with more than
- * `askAbove` expected particles is returned without running. `points` is the solved model that `field` names,
- * and `file` the file of an image or a mesh.
+ * A request as the worker has it. It samples the field from the start, in the way of its kind (see `kinds.js`). The
+ * particles may follow the surface instead in the settings of `following`; with `isClosed` they are then neither born
+ * nor die. A job with more than `askAbove` expected particles is returned without running. `points` is the solved model
+ * that `field` names, and `file` the file of an image or a mesh.
  */
-export interface SampleJob {
-  kind: SampleKind;
+export interface SampleJob extends SampleRequest {
   id: number;
-  field: FieldRequest;
   points: Pick<Solved, 'field' | 'info'> | null;
   file?: KeyedFile | null;
-  settings: Settings;
   following: Settings[];
   isClosed?: boolean;
   askAbove: number;
 }
 /** Relaxes the particles that the worker holds. They must be those of job `of`. */
-export type RelaxJob = { kind: 'relax'; id: number; of: number; steps: number };
+export type RelaxJob = RelaxRequest & { id: number };
 export type Job = SampleJob | RelaxJob;
 /**
  * A `job` takes the place of the one that waits, and replaces the running one once the core has accepted its field
@@ -234,8 +231,8 @@ export interface Env extends WorkerEnv<FromWorker> {
   /** whether the page has drawn the columns sent so far */
   room: () => boolean;
 }
-/** The part of a job's surroundings that joining uses. */
-export type SliceEnv = Pick<Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>;
+/** The part of a job's surroundings that the work after a run uses. */
+export type AfterEnv = Pick<Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>;
 /**
  * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page
  * has.

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { nextBudget } from '../../../src/engine/bundle/budget.js';
+import { nextBudget } from '../../../src/engine/bundle/slices.js';
 import { runJob } from '../../../src/engine/sampling/job.js';
 import { Jobs } from '../../../src/engine/sampling/jobs.js';
 import { fakeCore } from './fake-core.js';
@@ -263,11 +263,7 @@ describe('a job', () => {
     await run(core, sampleJob(), { memory });
     const settings = /** @type {any} */ ({ count: 3000 });
     const job = sampleJob({ id: 8, kind: 'live', settings, following: [settings] });
-    let looks = 0;
-    const interrupt = () => {
-      looks += 1;
-      return looks > 1 ? 'stop' : null;
-    };
+    const interrupt = () => (core.calls.includes('follow') ? 'stop' : null);
     const { posted } = await run(core, job, { memory, interrupt });
     expect(core.calls).toContain('follow');
     expect(of(posted, 'columns')).toEqual([]);
