@@ -11,7 +11,7 @@ use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{
     Setting, SettingGroup, SettingKind, SettingValue, SolidSettings, settings, without_effect,
 };
-use marching_particles::{FormulaErrorKind, Settings};
+use marching_particles::{FormulaErrorKind, Radius, Settings};
 use serde_json::{Map, Value as Json};
 use std::ops::RangeInclusive;
 
@@ -210,7 +210,7 @@ impl SamplingOptions {
         let mut settings = self.settings(bounds);
         for (name, length) in &self.lengths {
             if let (&RADIUS, &Length::Units(length)) = (name, length) {
-                settings.radius = Some(length);
+                settings.radius = Some(Radius::Length(length));
             }
         }
         settings

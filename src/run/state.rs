@@ -105,6 +105,9 @@ impl<'f> RunState<'f> {
     ) -> Result<Start, SettingsError> {
         settings.validate()?;
         self.bounds.check()?;
+        if self.spacing.is_some() && settings.radius.is_some() {
+            return Err(SettingsError::RadiusOfVarying);
+        }
         let mut settings = settings.in_shares_of(&self.bounds)?;
         if let Some(spacing) = &self.spacing {
             spacing.check_limits()?;

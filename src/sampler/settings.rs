@@ -4,7 +4,8 @@ use crate::field::FieldError;
 use crate::math::{Bounds, BoxError, place_text, shortest_text};
 use core::fmt;
 use core::ops::RangeInclusive;
-use serde::{Deserialize, Serialize};
+use serde::de::{self, IgnoredAny, MapAccess, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Whether all particles have one size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,13 +67,68 @@ pub enum GapPolicy {
     Leave,
 }
 
-/// The repulsion radius of a run.
+/// The repulsion radius of a run. As text, a length is a number and a share an object:
+/// `{"share": 0.01}`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Radius {
     /// As a length, in the units of the coordinates.
     Length(f64),
     /// As a share of the diagonal of the box.
     Share(f64),
+}
+
+impl Radius {
+    /// The radius as a share of the diagonal of a box.
+    fn share_of(self, bounds: &Bounds) -> f64 {
+        match self {
+            Self::Length(length) => length / bounds.diagonal(),
+            Self::Share(share) => share,
+        }
+    }
+}
+
+impl Serialize for Radius {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match *self {
+            Self::Length(length) => serializer.serialize_f64(length),
+            Self::Share(share) => serializer.collect_map([("share", share)]),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Radius {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ReadRadius)
+    }
+}
+
+struct ReadRadius;
+
+impl<'de> Visitor<'de> for ReadRadius {
+    type Value = Radius;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a length, or {\"share\": a share of the diagonal of the box}")
+    }
+
+    fn visit_f64<E: de::Error>(self, length: f64) -> Result<Radius, E> {
+        Ok(Radius::Length(length))
+    }
+
+    fn visit_i64<E: de::Error>(self, length: i64) -> Result<Radius, E> {
+        Ok(Radius::Length(length as f64))
+    }
+
+    fn visit_u64<E: de::Error>(self, length: u64) -> Result<Radius, E> {
+        Ok(Radius::Length(length as f64))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Radius, A::Error> {
+        match (map.next_entry::<String, f64>()?, map.next_key::<IgnoredAny>()?) {
+            (Some((key, share)), None) if key == "share" => Ok(Radius::Share(share)),
+            _ => Err(de::Error::invalid_type(Unexpected::Map, &self)),
+        }
+    }
 }
 
 /// Settings of a run. `Default` gives the paper's values where it names them. As text, unknown keys
@@ -93,9 +149,10 @@ pub struct Settings {
     /// surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
-    /// Repulsion radius r as a length. If it is given, `size_mode` and `radius_share` are ignored.
+    /// Repulsion radius r of particles of one size. If it is given, `size_mode` and `radius_share`
+    /// are ignored.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub radius: Option<f64>,
+    pub radius: Option<Radius>,
     /// Grid cells along the longest side of the box, to find a surface whose field has no
     /// [bounds](crate::Bounded): a part smaller than a cell may be missed. Half as many take a
     /// quarter of the evaluations. The default is 64.
@@ -198,9 +255,10 @@ pub enum SettingsError {
         /// Largest value allowed.
         max: f64,
     },
-    /// A radius given as a length although sizes follow the curvature.
-    #[error("a radius is for particles of one size: adaptive ones take a count or a chord error")]
-    RadiusOfAdaptive,
+    /// A [radius](Settings::radius) is given although sizes follow the curvature or a
+    /// [spacing](super::Spacing).
+    #[error("a radius is for particles of one size: sizes that vary take a count or a chord error instead")]
+    RadiusOfVarying,
     /// The box cannot be sampled.
     #[error(transparent)]
     Box(#[from] BoxError),
@@ -279,8 +337,8 @@ impl Settings {
     }
 
     /// Default settings for particles with this repulsion radius, with the largest possible room;
-    /// neighbours sit two radii apart. Adaptive sampling takes its radii from the curvature
-    /// instead.
+    /// neighbours sit two radii apart. [Adaptive](Self::adaptive) sampling
+    /// refuses them: it takes its radii from the curvature.
     ///
     /// ```
     /// use marching_particles::{Radius, Settings, sample};
@@ -293,11 +351,7 @@ impl Settings {
     #[must_use]
     pub fn with_radius(radius: Radius) -> Self {
         let max_particles = (COUNT_ROOM * MOST_WANTED) as u32;
-        let settings = Self { max_particles, ..Self::DEFAULT };
-        match radius {
-            Radius::Length(length) => Self { radius: Some(length), ..settings },
-            Radius::Share(share) => Self { radius_share: share, ..settings },
-        }
+        Self { radius: Some(radius), max_particles, ..Self::DEFAULT }
     }
 
     /// Default settings for adaptive sampling in which triangles of neighbours stay within this
@@ -314,8 +368,8 @@ impl Settings {
     }
 
     /// Chooses adaptive sampling (paper §5), in which the repulsion radius follows the curvature,
-    /// and returns the settings. A radius as a share then has no effect; a length is
-    /// [refused](SettingsError::RadiusOfAdaptive) when a run starts.
+    /// and returns the settings. A given radius is [refused](SettingsError::RadiusOfVarying) when
+    /// a run starts: give a count or a chord error.
     #[must_use]
     pub fn adaptive(self) -> Self {
         Self { sampling: Sampling::Adaptive, ..self }
@@ -346,7 +400,7 @@ impl Settings {
     #[must_use]
     pub fn largest_share(&self, bounds: &Bounds) -> f64 {
         let share = match (self.size_mode, self.sampling, self.radius) {
-            (_, Sampling::Uniform, Some(length)) => length / bounds.diagonal(),
+            (_, Sampling::Uniform, Some(radius)) => radius.share_of(bounds),
             (SizeMode::Radius, Sampling::Uniform, None) => self.radius_share,
             // For an area of one squared diagonal, about that of a sphere; each particle takes 2√3
             // r².
@@ -362,13 +416,18 @@ impl Settings {
     ///
     /// If the radius is a length that is out of range there.
     pub(crate) fn in_shares_of(self, bounds: &Bounds) -> Result<Self, SettingsError> {
-        let Some(length) = self.radius else { return Ok(self) };
-        let diagonal = bounds.diagonal();
-        let (min, max) = (LEAST_SHARE * diagonal, MOST_SHARE * diagonal);
-        if !(min..=max).contains(&length) {
-            return Err(SettingsError::OutOfRange { name: "radius", value: length, min, max });
-        }
-        let radius_share = (length / diagonal).clamp(LEAST_SHARE, MOST_SHARE);
+        let radius_share = match self.radius {
+            None => return Ok(self),
+            Some(Radius::Share(share)) => share,
+            Some(Radius::Length(length)) => {
+                let diagonal = bounds.diagonal();
+                let (min, max) = (LEAST_SHARE * diagonal, MOST_SHARE * diagonal);
+                if !(min..=max).contains(&length) {
+                    return Err(SettingsError::OutOfRange { name: "radius", value: length, min, max });
+                }
+                (length / diagonal).clamp(LEAST_SHARE, MOST_SHARE)
+            }
+        };
         Ok(Self { radius_share, size_mode: SizeMode::Radius, ..self })
     }
 
@@ -382,13 +441,17 @@ impl Settings {
         let cells = self.survey_cells.map(|cells| ("survey_cells", 8.0, 512.0, cells.into()));
         // The smallest radius is not above the largest.
         let least = ("radius_min_share", LEAST_SHARE, self.radius_max_share, self.radius_min_share);
-        for (name, min, max, value) in numbers.chain([least]).chain(cells) {
+        let share = match self.radius {
+            Some(Radius::Share(share)) => Some(("radius", LEAST_SHARE, MOST_SHARE, share)),
+            _ => None,
+        };
+        for (name, min, max, value) in numbers.chain([least]).chain(cells).chain(share) {
             if !(min..=max).contains(&value) {
                 return Err(SettingsError::OutOfRange { name, value, min, max });
             }
         }
         if self.sampling == Sampling::Adaptive && self.radius.is_some() {
-            return Err(SettingsError::RadiusOfAdaptive);
+            return Err(SettingsError::RadiusOfVarying);
         }
         Ok(self.bounds.map_or(Ok(()), |bounds| bounds.check())?)
     }

@@ -212,7 +212,8 @@ impl From<&SpacedSettings> for SpacedSettings {
 impl Settings {
     /// Sets the distance between neighbours as a function of position, and returns the settings
     /// with it. With [`Settings::adaptive`] the smaller one of it and the spacing by curvature is
-    /// used; [`Settings::radius`] and [`Settings::radius_share`] are ignored.
+    /// used. A given [`Settings::radius`] is [refused](SettingsError::RadiusOfVarying) when a run
+    /// starts.
     #[must_use]
     pub fn spaced(self, spacing: Spacing) -> SpacedSettings {
         SpacedSettings { settings: self, spacing: Some(spacing) }

@@ -7,7 +7,7 @@ use super::{BoxCell, BoxFaces, BoxMode, FileRecord, Session, SpacingText};
 use crate::field::formula::Thickness;
 use crate::field::gallery;
 use crate::math::{Bounds, grouped, shortest_text};
-use crate::sampler::{Method, Sampling, Settings, SizeMode};
+use crate::sampler::{Method, Radius, Sampling, Settings, SizeMode};
 use core::fmt::Write as _;
 use serde::Serialize;
 
@@ -118,6 +118,16 @@ impl Program<'_> {
         self.is_adaptive() || self.record.spacing.is_some()
     }
 
+    /// The radius, if it determines the sizes and is not the default.
+    fn radius(&self) -> Option<Radius> {
+        let Settings { size_mode, radius, radius_share, .. } = self.settings;
+        if self.are_graded() || size_mode == SizeMode::Count {
+            return None;
+        }
+        let is_own = radius_share != Settings::DEFAULT.radius_share;
+        radius.or(is_own.then_some(Radius::Share(radius_share)))
+    }
+
     /// The sampled box, if it has to be written. Around a closed solid it is only the box of the
     /// settings.
     fn sampled_box(&self) -> Option<Bounds> {
@@ -209,11 +219,9 @@ impl Program<'_> {
             made.push(format!(".in_box({})", rust_box(&bounds)));
         }
         let mut assigned = Vec::new();
-        match (settings.radius, settings.radius_share) {
-            _ if self.are_graded() || settings.size_mode == SizeMode::Count => {}
-            (Some(length), _) => assigned.push(format!("settings.radius = Some({length:?});")),
-            (None, share) if share == Settings::DEFAULT.radius_share => {}
-            (None, share) => assigned.push(format!("settings.radius_share = {share:?};")),
+        if let Some(radius) = self.radius() {
+            imports.push("Radius");
+            assigned.push(format!("settings.radius = Some(Radius::{radius:?});"));
         }
         for setting in self.others() {
             let value = match setting.default {
@@ -277,15 +285,16 @@ impl Program<'_> {
                 if is_python { format!("{{{entries}}}") } else { format!("{{ {entries} }}") },
             ));
         }
-        match (settings.size_mode, settings.radius) {
-            (SizeMode::Count, _) => given.push(("count", settings.count.to_string())),
-            _ if self.are_graded() => {}
-            (SizeMode::Radius, Some(length)) => given.push(("radius", shortest_text(length))),
-            (SizeMode::Radius, None) if settings.radius_share == Settings::DEFAULT.radius_share => {}
-            (SizeMode::Radius, None) => {
-                given.push(("radius", quoted(&percent_text(settings.radius_share), quote)));
-            }
+        if settings.size_mode == SizeMode::Count {
+            given.push(("count", settings.count.to_string()));
         }
+        given.extend(self.radius().map(|radius| {
+            let text = match radius {
+                Radius::Length(length) => shortest_text(length),
+                Radius::Share(share) => quoted(&percent_text(share), quote),
+            };
+            ("radius", text)
+        }));
         if let Some(spacing) = &record.spacing {
             given.push(("spacing", quoted(&spacing.formula, quote)));
         }
@@ -402,14 +411,13 @@ impl Program<'_> {
         if let Some(thickness) = solid.sheet() {
             words.push(format!("--thickness {}", in_shell(&thickness.to_string())));
         }
-        match (settings.size_mode, settings.radius) {
-            (SizeMode::Count, _) => words.push(format!("--count {}", settings.count)),
-            _ if self.are_graded() => {}
-            (SizeMode::Radius, Some(length)) => words.push(format!("--radius {}", shortest_text(length))),
-            (SizeMode::Radius, None) => {
-                words.push(format!("--radius {}", percent_text(settings.radius_share)));
-            }
+        if settings.size_mode == SizeMode::Count {
+            words.push(format!("--count {}", settings.count));
         }
+        words.extend(self.radius().map(|radius| match radius {
+            Radius::Length(length) => format!("--radius {}", shortest_text(length)),
+            Radius::Share(share) => format!("--radius {}", percent_text(share)),
+        }));
         if self.is_adaptive() {
             words.push("--adaptive".to_owned());
         }

@@ -3,8 +3,9 @@
 use marching_particles::glam::DVec3;
 use marching_particles::{
     BatchField, Bounds, BoxError, Error, Field, FnField, Format, Formula, Measured, MeshFormat, Method,
-    Particles, Radius, Run, Settings, SettingsError, Severity, StopReason, Warning, sample,
+    Particles, Radius, Run, Settings, SettingsError, Severity, Spacing, StopReason, Warning, sample,
 };
+use serde_json::json;
 use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -468,10 +469,7 @@ fn settings_out_of_range_are_refused_before_any_work() {
         assert_eq!(error, Error::Settings(SettingsError::Box(fault)));
     }
     let error = sample(untouched(), &Settings::with_radius(Radius::Share(0.5))).unwrap_err();
-    assert!(
-        matches!(error, Error::Settings(SettingsError::OutOfRange { name: "radius_share", .. })),
-        "{error:?}"
-    );
+    assert!(matches!(error, Error::Settings(SettingsError::OutOfRange { name: "radius", .. })), "{error:?}");
 }
 
 #[test]
@@ -547,18 +545,33 @@ fn a_radius_is_a_length_or_a_share_and_makes_room() {
 }
 
 #[test]
-fn a_radius_of_adaptive_particles_is_refused() {
+fn a_radius_of_particles_of_many_sizes_is_refused() {
     let sphere = Formula::parse("x^2 + y^2 + z^2 = 1").expect("a formula");
-    let refused = sample(sphere, &Settings::with_radius(Radius::Length(0.1)).adaptive()).err();
-    assert!(matches!(refused, Some(Error::Settings(SettingsError::RadiusOfAdaptive))), "{refused:?}");
+    for radius in [Radius::Length(0.1), Radius::Share(0.02)] {
+        let settings = Settings::with_radius(radius);
+        let spacing = Spacing::by(|p: DVec3| 0.1 + 0.01 * p.z.abs());
+        for settings in [(&settings.adaptive()).into(), settings.spaced(spacing)] {
+            let refused = sample(&sphere, &settings).err();
+            assert!(matches!(refused, Some(Error::Settings(SettingsError::RadiusOfVarying))), "{refused:?}");
+        }
+    }
 }
 
 #[test]
 fn settings_as_text_keep_the_box_and_refuse_names_that_they_do_not_have() {
     let in_box = Settings::with_count(7).in_box(Bounds::cube(1.5));
-    let settings = settings!(radius: Some(0.1), survey_cells: Some(32); ..in_box);
-    let text = serde_json::to_string(&settings).unwrap();
-    assert_eq!(serde_json::from_str::<Settings>(&text).unwrap(), settings);
+    for (radius, written) in
+        [(Radius::Length(0.1), json!(0.1)), (Radius::Share(0.01), json!({"share": 0.01}))]
+    {
+        let settings = settings!(radius: Some(radius), survey_cells: Some(32); ..in_box);
+        let text = serde_json::to_string(&settings).unwrap();
+        assert_eq!(serde_json::from_str::<Settings>(&text).unwrap(), settings);
+        assert_eq!(json!(settings)["radius"], written);
+    }
+    let whole = serde_json::from_str::<Settings>("{\"radius\": 1}").unwrap();
+    assert_eq!(whole.radius, Some(Radius::Length(1.0)));
+    let error = serde_json::from_str::<Settings>("{\"radius\": {\"part\": 1}}").unwrap_err().to_string();
+    assert!(error.contains("expected a length, or {\"share\": a share"), "{error}");
     assert_eq!(serde_json::from_str::<Settings>("{}").unwrap(), Settings::DEFAULT);
     let error = serde_json::from_str::<Settings>("{\"relax_step\": 3}").unwrap_err();
     assert!(error.to_string().starts_with("unknown field `relax_step`"), "{error}");

@@ -103,31 +103,31 @@ fn a_printed_program_in_rust_makes_the_same_particles() {
             let particles = sample(surface, &settings)?;
         },
         lines! { particles:
-            use marching_particles::{Bounds, Formula, Settings, sample};
+            use marching_particles::{Bounds, Formula, Radius, Settings, sample};
             let surface = Formula::parse("(sqrt(x^2 + y^2) - R)^2 + z^2 = r^2")?
                 .with("R", 1.0)?
                 .with("r", 0.25)?;
             let mut settings = Settings::default()
                 .in_box(Bounds { min: [-1.65, -1.65, -0.55], max: [1.65, 1.65, 0.55] });
-            settings.radius_share = 0.02;
+            settings.radius = Some(Radius::Share(0.02));
             let particles = sample(surface, &settings)?;
         },
         lines! { particles:
-            use marching_particles::{Formula, GapPolicy, Settings, sample};
+            use marching_particles::{Formula, GapPolicy, Radius, Settings, sample};
             let surface = Formula::parse("max(abs(x), abs(y), abs(z)) - 1")?;
             let mut settings = Settings::default().seeded(7);
-            settings.radius = Some(0.08);
+            settings.radius = Some(Radius::Length(0.08));
             settings.relax_steps = 3;
             settings.gaps = GapPolicy::Leave;
             let particles = sample(surface, &settings)?;
         },
         lines! { particles:
-            use marching_particles::{Bounds, Formula, Settings, sample};
+            use marching_particles::{Bounds, Formula, Radius, Settings, sample};
             let surface = Formula::parse("x^2 + y^2 = 1 + z^2")?
                 .thickened(0.2)
                 .closed_by(&Bounds::cube(4.0));
             let mut settings = Settings::default();
-            settings.radius_share = 0.03;
+            settings.radius = Some(Radius::Share(0.03));
             let particles = sample(surface, &settings)?;
         },
     ];
