@@ -97,7 +97,7 @@
 //! | its settings | [`Settings`], [`Spacing`], [`SpacedSettings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
 //! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`Thickness`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [`PorosityError`], [gallery] |
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`BatchPiecewise`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [`Within`], [glam] |
-//! | solids of two fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`Combined`] |
+//! | solids of several fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`IntoFields`], [`Combined`] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | three-dimensional images | [`Image`], [`ImageField`], [`ImageChoice`], [`ImageSurface`], [`ImageOutline`], [`ImagePlacement`], [`Voxel`], [`VoxelType`], [`Label`], [`DEFAULT_LABEL_WIDTH`], [`ImageFormat`], [`RawVoxels`], [`ImageError`], [`ImageReadError`] |
 //! | triangle meshes | [`TriangleMesh`], [`MeshSolid`], [`MeshRepairs`], [`MeshOptions`], [`MeshEdges`], [`MeshField`], [`MeshKind`], [`MeshRim`], [`MeshChange`], [`MeshDistances`], [`MeshError`] |
@@ -177,8 +177,8 @@ pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSourc
 pub use field::rbf::RbfField;
 pub use field::{
     BatchField, BatchPiecewise, Bounded, Combined, Enclosure, Evaluator, Facts, Field, FieldError, FnField,
-    Frame, IntoField, Jet, Pieces, PiecewiseFn, SharedError, UnitCell, Within, difference, gallery,
-    intersection, offset, smooth_union, union,
+    Frame, IntoField, IntoFields, Jet, Pieces, PiecewiseFn, SharedError, UnitCell, Within, difference,
+    gallery, intersection, offset, smooth_union, union,
 };
 pub use glam;
 #[cfg(feature = "images")]

@@ -187,12 +187,13 @@ impl Field {
 
     /// The union, in a box around the boxes of both fields if they are known.
     fn union(&self, other: &Self) -> Self {
-        self.with(other, marching_particles::union, self.joined(other))
+        self.with(other, |a, b| marching_particles::union([a, b]), self.joined(other))
     }
 
     /// The intersection; the box of either field contains it.
     fn intersection(&self, other: &Self) -> Self {
-        self.with(other, marching_particles::intersection, self.known().or_else(|| other.known()))
+        let bounds = self.known().or_else(|| other.known());
+        self.with(other, |a, b| marching_particles::intersection([a, b]), bounds)
     }
 
     /// The difference; the box of this field contains it.

@@ -79,6 +79,53 @@ where
     }
 }
 
+/// Several fields to be combined, as by [`union`](super::union): an array or a vector of one type
+/// that can be [sampled](IntoField), or a tuple of up to six types.
+pub trait IntoFields<Kind> {
+    /// The fields.
+    #[doc(hidden)]
+    fn into_fields(self) -> Vec<Arc<dyn Field>>;
+}
+
+/// A field as an operand.
+pub(super) fn shared<A: IntoField<K, Field: 'static>, K>(given: A) -> Arc<dyn Field> {
+    let field = given.into_field();
+    field.operand().unwrap_or_else(|| Arc::new(field))
+}
+
+impl<A: IntoField<K, Field: 'static>, K, const N: usize> IntoFields<K> for [A; N] {
+    fn into_fields(self) -> Vec<Arc<dyn Field>> {
+        self.into_iter().map(shared).collect()
+    }
+}
+
+impl<A: IntoField<K, Field: 'static>, K> IntoFields<K> for Vec<A> {
+    fn into_fields(self) -> Vec<Arc<dyn Field>> {
+        self.into_iter().map(shared).collect()
+    }
+}
+
+/// Declares that tuples of these types are several fields: type and kind of each.
+macro_rules! tuples {
+    ($($(($name:ident $kind:ident))+,)*) => {$(
+        impl<$($name: IntoField<$kind, Field: 'static>, $kind),+> IntoFields<($($kind,)+)> for ($($name,)+) {
+            fn into_fields(self) -> Vec<Arc<dyn Field>> {
+                #[expect(non_snake_case, reason = "values named like their types")]
+                let ($($name,)+) = self;
+                vec![$(shared($name)),+]
+            }
+        }
+    )*};
+}
+
+tuples! {
+    (A Ka)(B Kb),
+    (A Ka)(B Kb)(C Kc),
+    (A Ka)(B Kb)(C Kc)(D Kd),
+    (A Ka)(B Kb)(C Kc)(D Kd)(E Ke),
+    (A Ka)(B Kb)(C Kc)(D Kd)(E Ke)(F Kf),
+}
+
 /// An error of a function of the program, in shareable form. In WebAssembly it may hold values of
 /// JavaScript.
 #[cfg(not(target_arch = "wasm32"))]

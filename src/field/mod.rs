@@ -22,7 +22,7 @@ pub use crate::slices::{MaybeSend, MaybeSync};
 pub use combined::{Combined, difference, intersection, offset, smooth_union, union};
 pub use evaluator::{Bounded, Evaluator, Frame, Pieces};
 pub use function::{BatchField, FnField};
-pub use given::{FieldError, IntoField, SharedError, kind};
+pub use given::{FieldError, IntoField, IntoFields, SharedError, kind};
 pub use piecewise::{BatchPiecewise, PiecewiseFn};
 
 use evaluator::Pointwise;

@@ -149,6 +149,17 @@ impl Source {
             _ => None,
         }
     }
+
+    fn shared(&self) -> Arc<dyn Field> {
+        match self {
+            Self::Formula(field) => Arc::new(field.clone()),
+            Self::Points { within: Some(formula), .. } => Arc::new(formula.field.clone()),
+            Self::Points { field, .. } => Arc::new(field.clone()),
+            #[cfg(feature = "images")]
+            Self::Opened(opened) => opened.shared(),
+            Self::Function(field) => Arc::clone(field),
+        }
+    }
 }
 
 impl Deref for Source {
@@ -238,6 +249,12 @@ impl Session {
 
     fn source(&self) -> &Source {
         self.run.field()
+    }
+
+    /// The present field, to be combined with others.
+    #[must_use]
+    pub fn field(&self) -> Arc<dyn Field> {
+        self.source().shared()
     }
 
     /// The description of the present field.

@@ -127,7 +127,7 @@ fn smooth_functions_have_no_edges() {
 fn what_functions_with_edges_are_put_together_to_has_all_of_them() {
     let cube = |at: DVec3| move |p: DVec3| block(p - at, DVec3::splat(0.5));
     let ball = |p: DVec3| p.distance(dvec3(0.6, 0.6, 0.6)) - 0.4;
-    let made = sample(union(cube(DVec3::ZERO), ball), &Settings::with_count(3_000)).expect("a solid");
+    let made = sample(union((cube(DVec3::ZERO), ball)), &Settings::with_count(3_000)).expect("a solid");
     assert!(made.mesh().topology.is_closed(), "{:?}", made.report().warnings);
     assert_eq!(made.mesh().topology.euler(), 2);
     // The blend of two cubes that are apart has the edges of both.

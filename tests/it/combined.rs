@@ -1,4 +1,4 @@
-//! Fields put together of any two.
+//! Fields put together of others.
 
 use glam::{DVec3, Vec3, dvec2, dvec3};
 use marching_particles::field::model::ModelInfo;
@@ -49,14 +49,42 @@ fn functions_meet_in_an_edge() {
     // The cap of a ball beyond the plane in the middle.
     let cap = core::f64::consts::PI * 0.25 * (3.0 - 0.5) / 3.0;
     let whole = core::f64::consts::PI * 4.0 / 3.0;
-    check(union(left(), right()), 2.0, (2, Some(1), 2.0 * (whole - cap)), "union");
-    check(intersection(left(), right()), 2.0, (2, Some(1), 2.0 * cap), "intersection");
+    check(union([left(), right()]), 2.0, (2, Some(1), 2.0 * (whole - cap)), "union");
+    check(intersection([left(), right()]), 2.0, (2, Some(1), 2.0 * cap), "intersection");
     check(difference(left(), right()), 2.0, (2, Some(1), whole - 2.0 * cap), "difference");
 }
 
 #[test]
+fn lists_are_combined_pair_by_pair() {
+    let three = || [-0.5, 0.0, 0.5].map(|x| ball(dvec3(x, 0.0, 0.0), 0.5));
+    let [a, b, c] = three();
+    let lists = [
+        union(three()),
+        union(Vec::from(three())),
+        union((a, b, formula("hypot(x - 0.5, y, z) - 0.5"))),
+        union([union(three()), union([c])]),
+    ];
+    for k in 0..100 {
+        let p = DVec3::from_array([0.37, 0.61, 0.83].map(|step| (f64::from(k) * step).fract() * 2.0 - 1.0));
+        let values = three().map(|f| f(p));
+        let least = values.into_iter().fold(f64::INFINITY, f64::min);
+        for list in &lists {
+            assert!((list.value(p) - least).abs() < 1e-12, "{p}");
+        }
+        let most = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(intersection(three()).value(p), most, "{p}");
+    }
+}
+
+#[test]
+#[should_panic(expected = "at least one solid")]
+fn a_union_of_nothing_is_a_mistake_of_the_program() {
+    union(Vec::<Combined>::new());
+}
+
+#[test]
 fn their_edge_is_where_that_of_the_formula_is() {
-    let field = union(ball(CENTRES[0], 1.0), ball(CENTRES[1], 1.0));
+    let field = union([ball(CENTRES[0], 1.0), ball(CENTRES[1], 1.0)]);
     let made = check(field, 2.0, (2, Some(1), 7.0686), "union");
     for &first in &made.particles().twins {
         let p = made.particles().place(first as usize);
@@ -79,31 +107,32 @@ fn a_formula_keeps_its_own_edges() {
 fn fields_that_meet_without_an_edge_are_closed_as_their_formula_is() {
     let capped = || formula("max(hypot(x, y) - 0.5, abs(z) - 1)");
     // A sheet that rises from the plane without an edge where y < 0, and at an angle elsewhere.
-    let sheet = intersection(formula("z - x*(x + max(y, 0))"), |p: DVec3| -p.x);
+    let sheet = intersection((formula("z - x*(x + max(y, 0))"), |p: DVec3| -p.x));
     for (joined, text, half) in [
         // A rod with one round end.
         (
-            union(capped(), ball(DVec3::Z, 0.5)),
+            union((capped(), ball(DVec3::Z, 0.5))),
             "min(max(hypot(x, y) - 0.5, abs(z) - 1), hypot(x, y, z - 1) - 0.5)",
             1.8,
         ),
         // One with two, of functions.
         (
-            union(
-                intersection(|p: DVec3| p.truncate().length() - 0.5, |p: DVec3| p.z.abs() - 0.7),
-                union(ball(0.7 * DVec3::Z, 0.5), ball(-0.7 * DVec3::Z, 0.5)),
-            ),
+            union((
+                intersection((|p: DVec3| p.truncate().length() - 0.5, |p: DVec3| p.z.abs() - 0.7)),
+                ball(0.7 * DVec3::Z, 0.5),
+                ball(-0.7 * DVec3::Z, 0.5),
+            )),
             "hypot(x, y, max(abs(z) - 0.7, 0)) - 0.5",
             1.5,
         ),
         // A fillet that fades out in one of the operands.
         (
-            intersection(formula("smin(z, x, max(0, -y))"), ball(DVec3::ZERO, 1.0)),
+            intersection((formula("smin(z, x, max(0, -y))"), ball(DVec3::ZERO, 1.0))),
             "max(smin(z, x, max(0, -y)), hypot(x, y, z) - 1)",
             1.3,
         ),
         (
-            intersection(union(|p: DVec3| p.z, sheet), ball(DVec3::ZERO, 1.0)),
+            intersection((union((|p: DVec3| p.z, sheet)), ball(DVec3::ZERO, 1.0))),
             "max(z - max(x, 0)*(x + max(y, 0)), hypot(x, y, z) - 1)",
             1.3,
         ),
@@ -124,7 +153,7 @@ fn fields_that_meet_without_an_edge_are_closed_as_their_formula_is() {
 #[test]
 fn operations_follow_each_other() {
     let [left, right] = CENTRES.map(|centre| ball(centre, 1.0));
-    let both = union(left, right);
+    let both = union([left, right]);
     // The drill goes through both balls and cuts off nothing.
     let drilled = difference(both, |p: DVec3| dvec2(p.y, p.z).length() - 0.3);
     let settings = Settings::with_count(4_000).in_box(Bounds::cube(2.0));
@@ -164,7 +193,8 @@ fn a_smooth_union_is_that_of_formulas() {
 
 #[test]
 fn batches_agree_with_single_points_in_any_frame() {
-    let field = union(offset(ball(CENTRES[0], 1.0), 0.1), smooth_union(block(), ball(CENTRES[1], 1.0), 0.3));
+    let field =
+        union([offset(ball(CENTRES[0], 1.0), 0.1), smooth_union(block(), ball(CENTRES[1], 1.0), 0.3)]);
     let points: Vec<Vec3> = (0..300)
         .map(|k| Vec3::from_array([0.37, 0.61, 0.83].map(|step| (k as f32 * step).fract() * 2.0 - 1.0)))
         .collect();
@@ -188,7 +218,7 @@ fn batches_agree_with_single_points_in_any_frame() {
 #[test]
 fn calls_are_counted_and_limited() {
     let counted = |centre| FnField::new(ball(centre, 1.0)).limit_calls(1_000);
-    let field = union(counted(CENTRES[0]), counted(CENTRES[1]));
+    let field = union([counted(CENTRES[0]), counted(CENTRES[1])]);
     let settings = Settings::with_count(4_000).in_box(Bounds::cube(2.0));
     assert!(sample(field.clone(), &settings).is_err());
     assert!(field.calls().is_some_and(|calls| calls >= 1_000));

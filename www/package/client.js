@@ -220,10 +220,10 @@ class Sample {
    */
   async moved(params, options = {}) {
     this.#check('moved');
-    const { formula, cloud, given } = this.#how.request;
-    if (given ? formula !== undefined : formula === undefined || cloud)
+    const { formula, cloud, given, solid } = this.#how.request;
+    if (given ? formula !== undefined : formula === undefined || cloud || solid)
       throw new InputError(
-        'moved(): it is for a formula, an image or a mesh by itself, not for a function or points. Sample again.',
+        'moved(): it is for a formula, an image or a mesh by itself, not for functions, points or unions. Sample again.',
       );
     const parameters = { ...this.params, ...paramsOf(params, Object.keys(this.params)) };
     const how = { ...this.#how, ...checkedCalls(options) };
@@ -265,8 +265,7 @@ export function createSampler(open, openHere) {
   return async (/** @type {unknown} */ field, /** @type {Options} */ options = {}) => {
     const how = checked(field, options);
     const { settings, given, measure, request, functions } = how;
-    const all = [request.program, functions.spacing, ...Object.values(functions.values)];
-    const client = all.some((own) => typeof own === 'function' || typeof own === 'object') ? here : there;
+    const client = how.isHere ? here : there;
     const question = (/** @type {number} */ id) =>
       /** @type {const} */ ({ type: 'sample', id, field: request, functions, settings, given, measure });
     return new Sample(client, await client.ask(question, how), how);

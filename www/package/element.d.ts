@@ -12,7 +12,7 @@ export class MarchingParticles extends HTMLElement {
   /** values of parameters, as in `a=0.5, b=2` */
   params: string | null;
   count: string | null;
-  /** half of the distance between neighbours, as a share of the box diagonal */
+  /** half of the distance between neighbours, as a share of the box diagonal such as `1%` */
   radius: string | null;
   method: string | null;
   seed: string | null;

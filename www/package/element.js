@@ -7,23 +7,20 @@ import { homeView } from '../src/engine/share/view.js';
 import { InputError } from './errors.js';
 import { createView } from './view.js';
 
-/** @import { BackendKind, View, ViewState } from './view.js' */
+/** @import { BackendKind, View } from './view.js' */
 
-/**
- * The changes of the state that attributes for settings stand for.
- * @type {Record<string, (value: string) => Record<string, number | string>>}
- */
-const SETTINGS = {
-  count: (value) => ({ size_mode: 'count', count: numberOf('count', value) }),
-  radius: (value) => ({ size_mode: 'radius', radius_share: numberOf('radius', value) }),
-  method: (value) => ({ method: value }),
-  seed: (value) => ({ seed: numberOf('seed', value) }),
-  adaptive: () => ({ sampling: 'adaptive' }),
+/** The options that attributes stand for. @type {Record<string, (value: string) => unknown>} */
+const OPTIONS = {
+  count: (value) => numberOf('count', value),
+  radius: (value) => value,
+  method: (value) => value,
+  seed: (value) => numberOf('seed', value),
+  adaptive: () => true,
 };
 const VIEW = /** @type {const} */ (['colour', 'draw', 'theme']);
 const TEXTS = [
   ...['formula', 'surface', 'params', 'backend', ...VIEW],
-  ...Object.keys(SETTINGS).filter((name) => name !== 'adaptive'),
+  ...Object.keys(OPTIONS).filter((name) => name !== 'adaptive'),
 ];
 const FLAGS = ['adaptive', 'controls'];
 /** A motion is over after this time without a change of `params`. */
@@ -203,7 +200,7 @@ export class MarchingParticles extends Base {
     if (!this.#isSeen) return undefined;
     return this.#try(() => {
       const state = this.#state();
-      this.#params = state.parameters;
+      this.#params = state.params;
       // Otherwise the end of a motion would restore older parameters.
       clearTimeout(this.#still);
       if (this.#view) return this.#view.set(state);
@@ -240,20 +237,18 @@ export class MarchingParticles extends Base {
 
   /** The state according to the attributes. Whatever they do not mention has its default. */
   #state() {
-    /** @type {ViewState & {parameters: Record<string, number>, settings: object}} */
     const state = {
       surface: this.getAttribute('surface'),
       formula: this.getAttribute('formula') ?? undefined,
-      parameters: paramsOf(this.getAttribute('params') ?? ''),
-      settings: {},
+      params: paramsOf(this.getAttribute('params') ?? ''),
     };
-    for (const [name, settingsOf] of Object.entries(SETTINGS)) {
+    const options = Object.entries(OPTIONS).map(([name, optionOf]) => {
       const value = this.getAttribute(name);
-      if (value !== null) Object.assign(state.settings, settingsOf(value));
-    }
+      return [name, value === null ? null : optionOf(value)];
+    });
     const home = homeView();
     const view = Object.fromEntries(VIEW.map((name) => [name, this.getAttribute(name) ?? home[name]]));
-    return { ...state, view };
+    return { ...state, ...Object.fromEntries(options), view };
   }
 }
 

@@ -15,8 +15,10 @@ export interface Progress {
   /** share of the work that is done, including the report */
   fraction: number;
 }
-/** A length in the units of the field, or a share of the diagonal of the box such as '1%'. */
-export type Size = number | `${number}%`;
+/** A share of the diagonal of the box, such as '1%'. */
+export type Share = `${number}%`;
+/** A length in the units of the field, or a share of the diagonal of the box. */
+export type Size = number | Share;
 /**
  * Options of a sampling. One of `count`, `spacing` and `radius` sets the size; the default radius is 0.6 % of the
  * diagonal, and adaptive particles stay close to the surface.
@@ -36,8 +38,8 @@ export interface Options {
   /** of points: whether their surface ends at their border (default) or continues */
   beyondPoints?: 'cut' | 'kept';
   /**
-   * of points, an image or a mesh: a formula in which `model` is their surface, as an operand of max, min, smin, smax
-   * or abs, or with a number added: `max(model, z)` cuts it
+   * of points, an image, a mesh or a union: a formula in which `model` is their surface, as an operand of max, min,
+   * smin, smax or abs, or with a number added: `max(model, z)` cuts it
    */
   formula?: string;
   /** values of the names in the formula */
@@ -260,12 +262,45 @@ export interface MeshSource {
     | { points: Numbers; faces: Uint32Array | number[] | [number, number, number][] };
   name?: string;
 }
+/** A solid that is made of others by `union` and the like. */
+export interface Solid {
+  readonly join: 'union' | 'intersection' | 'difference' | 'smoothUnion' | 'offset';
+  readonly of: readonly Field[];
+  /** the width of a smooth union, the distance of an offset */
+  readonly by?: number;
+}
 /**
  * What can be sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z) of one point or of many at once,
- * negative inside and NaN where undefined; the pieces of such a function; points; a three-dimensional image; or a
- * triangle mesh.
+ * negative inside and NaN where undefined; the pieces of such a function; points; a three-dimensional image; a triangle
+ * mesh; or a solid that is made of such fields.
  */
-export type Field = string | OfPlace | Batch | Pieces | Points | PointsFile | ImageFile | ImageArray | MeshSource;
+export type Field =
+  | string
+  | OfPlace
+  | Batch
+  | Pieces
+  | Points
+  | PointsFile
+  | ImageFile
+  | ImageArray
+  | MeshSource
+  | Solid;
+
+/**
+ * The union of solids, or of a list of them: min(a, b, …), negative where one of them is. Where their surfaces meet at
+ * an angle, particles lie on the edge and the mesh is closed along it. Edges are searched for in cells of a 128th of
+ * the box: a smaller loop may be missed. Formulas are better written as one with `min`, `max` and `-`, which proves
+ * that nothing is missing. `params` has the values for all formulas.
+ */
+export function union(...solids: Field[] | [readonly Field[]]): Solid;
+/** The intersection of solids, or of a list of them: max(a, b, …), negative where all are. */
+export function intersection(...solids: Field[] | [readonly Field[]]): Solid;
+/** The difference of two solids: max(a, −b), negative where a is and b is not. */
+export function difference(a: Field, b: Field): Solid;
+/** The union of two solids, rounded where the fields differ by less than the width: `smin(a, b, width)` of formulas. */
+export function smoothUnion(a: Field, b: Field, width: number): Solid;
+/** The field a − distance: if a is the distance from a solid, this solid is larger by `distance`. */
+export function offset(a: Field, distance: number): Solid;
 
 /**
  * Covers the surface f = 0 with evenly spaced particles. Formulas, points, images and meshes are sampled in a worker. A

@@ -10,6 +10,7 @@ import { createSampler } from './client.js';
 import { openHere } from './here.js';
 
 export * from './errors.js';
+export { difference, intersection, offset, smoothUnion, union } from './solids.js';
 
 const open = openHere(async (name) => ({ core, points })[name]);
 export const sample = createSampler(open, open);

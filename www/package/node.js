@@ -5,6 +5,7 @@ import { openHere } from './here.js';
 import { load } from './load-node.js';
 
 export * from './errors.js';
+export { difference, intersection, offset, smoothUnion, union } from './solids.js';
 
 /** @param {import('./protocol.js').Heard} heard @returns {import('./protocol.js').Line} */
 function open({ onMessage, onFail }) {

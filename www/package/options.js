@@ -7,10 +7,11 @@ import { choice, flag, number, shown, vectors } from './checks.js';
 import { InputError } from './errors.js';
 import { blobOf, imageOf, isImage, valuesOf } from './image.js';
 import { isMesh, meshOf } from './mesh.js';
+import { isSolid, leavesOf, solidOf } from './solids.js';
 
 /**
  * @import { Batch, OfPlace, Options, Pieces } from './index.js'
- * @import { Cloud, SentField, SentFunctions, Settings } from './protocol.js'
+ * @import { Cloud, SentField, SentFunctions, SentPart, Settings } from './protocol.js'
  */
 
 /**
@@ -61,7 +62,8 @@ const isFunction = (value) => typeof value === 'string' || typeof value === 'fun
  * Whether a spacing depends on the place: a text that is no share.
  * @param {unknown} spacing @returns {spacing is string | OfPlace}
  */
-const isVarying = (spacing) => isFunction(spacing) && !(typeof spacing === 'string' && spacing.trim().endsWith('%'));
+export const isVarying = (spacing) =>
+  isFunction(spacing) && !(typeof spacing === 'string' && spacing.trim().endsWith('%'));
 
 /** @param {unknown} values @returns {SentFunctions['values']} */
 function functionsOf(values) {
@@ -89,7 +91,7 @@ function shareOf(name, text) {
  * @typedef {'count' | 'whole' | 'number' | 'spacing' | 'size' | 'text' | 'choice' | 'flag'} Kind
  * @type {Record<string, {setting: string, kind: Kind, values?: string[]}>}
  */
-const SETTINGS = {
+export const SETTINGS = {
   count: { setting: 'count', kind: 'count' },
   spacing: { setting: 'radius_share', kind: 'spacing' },
   radius: { setting: 'radius_share', kind: 'size' },
@@ -143,24 +145,32 @@ function distance(a, b) {
   return row[b.length];
 }
 
-/** Which option was meant, or all of them. @param {string} unknown */
-function meant(unknown) {
+/** Which name was meant, or all of them. @param {string} unknown @param {string[]} known */
+export function meant(unknown, known) {
   const plain = unknown.replaceAll(/[_-]/g, '').toLowerCase();
-  const near = KNOWN.find((name) => distance(plain, name.toLowerCase()) <= (plain.length > 4 ? 2 : 1));
-  return near === undefined ? `There are ${KNOWN.join(', ')}.` : `Did you mean ${near}?`;
+  const near = known.find((name) => distance(plain, name.toLowerCase()) <= (plain.length > 4 ? 2 : 1));
+  return near === undefined ? `There are ${known.join(', ')}.` : `Did you mean ${near}?`;
 }
 
 /** The option for a setting of the core. @param {string} setting */
 export const optionOf = (setting) =>
   Object.keys(SETTINGS).find((name) => name !== 'spacing' && SETTINGS[name].setting === setting) ?? setting;
 
+/** Refuses two sizes. @param {Record<string, unknown>} options */
+export function checkSizes(options) {
+  // If the spacing depends on the point, a count sets its scale.
+  const sizes = isVarying(options.spacing) ? SIZES.filter((name) => name !== 'count') : SIZES;
+  const [first, second] = sizes.filter((name) => options[name] !== undefined);
+  if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);
+}
+
 /**
  * The core's settings that the options set, and for each the option that set it.
  * @param {Record<string, unknown>} options
  */
-function settingsOf(options) {
+export function settingsOf(options) {
   /** @type {Settings} */
-  const settings = { max_particles: 1.1 * MOST };
+  const settings = {};
   /** @type {Record<string, number>} */
   const lengths = {};
   /** @type {Record<string, string>} */
@@ -224,7 +234,8 @@ function cloudOf({ points, normals, name }) {
 const A_FILE = /^[^=()]*\.(ply|obj|stl|off|pcd|xyz|pts|csv|npy|nii|nii\.gz|hdr|nrrd|nhdr|mha|mhd|cube|tiff?)$/i;
 const FIELD =
   "a formula such as 'x^2 + y^2 + z^2 = 1', a function (x, y, z) => number, {batch(xyz, out)}, {label, pieces}, " +
-  '{points} of a file or arrays, {image} of a file or an array of voxels, or {mesh} of a file or {points, faces}';
+  '{points} of a file or arrays, {image} of a file or an array of voxels, {mesh} of a file or {points, faces}, or a ' +
+  'union(...) of such fields';
 
 /** @param {{label?: unknown, pieces?: unknown}} given @returns {Pieces} */
 function piecesOf({ label, pieces }) {
@@ -237,7 +248,7 @@ function piecesOf({ label, pieces }) {
   return { label: /** @type {Pieces['label']} */ (label), pieces };
 }
 
-/** @param {unknown} field @returns {Pick<SentField, 'formula' | 'cloud' | 'program' | 'given'>} */
+/** @param {unknown} field @returns {SentPart} */
 function fieldOf(field) {
   if (typeof field === 'string') {
     if (A_FILE.test(field))
@@ -252,17 +263,18 @@ function fieldOf(field) {
   if (given.points !== undefined) return { cloud: cloudOf({ ...given, points: given.points }) };
   if (isImage(given)) return { given: imageOf(given) };
   if (isMesh(given)) return { given: meshOf(given) };
-  throw new InputError(`field: ${FIELD}, not ${shown(typeof field)}.`);
+  if (typeof given === 'object' && isSolid(given)) return { solid: solidOf(given, fieldOf) };
+  throw new InputError(`field: ${FIELD}, not ${Array.isArray(field) ? 'an array' : shown(typeof field)}.`);
 }
 
 /**
- * The formula in which the surface of points, an image or a mesh is an operand.
- * @param {unknown} formula @param {{cloud?: unknown, given?: unknown}} what
+ * The formula in which the surface of points, an image, a mesh or a combination is an operand.
+ * @param {unknown} formula @param {SentPart} what
  */
-function modelFormula(formula, { cloud, given }) {
-  if (cloud === undefined && given === undefined)
+function modelFormula(formula, { cloud, given, solid }) {
+  if (!cloud && !given && !solid)
     throw new InputError(
-      'formula: for points, an image or a mesh, whose surface it names model. Else the formula is the field.',
+      'formula: for points, an image, a mesh or a union, whose surface it names model. Else the formula is the field.',
     );
   if (typeof formula === 'string') return { formula };
   throw new InputError(`formula: a text such as 'max(model, z)', not ${shown(formula)}.`);
@@ -278,20 +290,19 @@ export function checked(field, options) {
   if (typeof options !== 'object' || options === null)
     throw new InputError(`options: an object, not ${shown(options)}.`);
   const unknown = Object.keys(options).find((name) => !KNOWN.includes(name));
-  if (unknown !== undefined) throw new InputError(`${unknown}: there is no such option. ${meant(unknown)}`);
-  // If the spacing depends on the point, a count sets its scale.
-  const sizes = isVarying(options.spacing) ? SIZES.filter((name) => name !== 'count') : SIZES;
-  const [first, second] = sizes.filter((name) => options[/** @type {keyof Options} */ (name)] !== undefined);
-  if (second) throw new InputError(`${first}, ${second}: one of the two, not both.`);
+  if (unknown !== undefined) throw new InputError(`${unknown}: there is no such option. ${meant(unknown, KNOWN)}`);
+  checkSizes(/** @type {Record<string, unknown>} */ (options));
   const { beyondPoints, bounds, formula, params, spacing, values = {}, measure = true } = options;
-  const { settings, given } = settingsOf(/** @type {Record<string, unknown>} */ (options));
+  const { settings: own, given } = settingsOf(/** @type {Record<string, unknown>} */ (options));
+  const settings = { max_particles: 1.1 * MOST, ...own };
   if (beyondPoints !== undefined && what.cloud === undefined)
     throw new InputError('beyondPoints: for points, beyond which their surface may go on.');
   const ofFormula = OF_FORMULAS.find((name) => options[/** @type {keyof Options} */ (name)]);
   if (ofFormula !== undefined && (what.formula === undefined || what.cloud !== undefined))
     throw new InputError(`${ofFormula}: for a formula by itself.`);
+  const leaves = leavesOf(what);
   if (formula !== undefined) Object.assign(what, modelFormula(formula, what));
-  if (params !== undefined && what.formula === undefined)
+  if (params !== undefined && [what, ...leaves].every((part) => part.formula === undefined))
     throw new InputError('params: a formula has parameters, a function, points, an image or a mesh have none.');
   /** @type {SentField} */
   const request = {
@@ -300,5 +311,8 @@ export function checked(field, options) {
     ...(bounds === undefined ? {} : { bounds: boundsOf(bounds) }),
   };
   const functions = { ...(isVarying(spacing) ? { spacing } : {}), values: functionsOf(values) };
-  return { request, functions, settings, given, measure: flag('measure', measure), ...checkedCalls(options) };
+  const programs = [...leaves.map(({ program }) => program), functions.spacing, ...Object.values(functions.values)];
+  /** Whether functions of the program are called. */
+  const isHere = programs.some((own) => typeof own === 'function' || typeof own === 'object');
+  return { request, functions, settings, given, isHere, measure: flag('measure', measure), ...checkedCalls(options) };
 }

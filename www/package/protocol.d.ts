@@ -9,7 +9,7 @@ import type {
   Report,
 } from '../src/engine/core-types.js';
 import type { GivenFile } from '../src/engine/files/types.js';
-import type { Batch, OfPlace, Pieces, Progress } from './index.js';
+import type { Batch, OfPlace, Pieces, Progress, Solid } from './index.js';
 
 /** Settings of the core by their names there; `lengths` replace shares. */
 export type Settings = Record<string, number | string | Record<string, number>>;
@@ -37,16 +37,16 @@ export type Asked =
   | { type: 'file'; id: number; of: number; format: string; mesh: boolean };
 /** Other messages: `stop` ends a request, `free` gives up a sample. */
 export type Said = { type: 'stop'; id: number } | { type: 'free'; id: number };
-/**
- * A formula; points, an image or a mesh, with or without a formula in which their surface is an operand; or a function
- * of the program, which never leaves its own thread.
- */
-export type SentField = Pick<Partial<FieldRequest>, 'formula' | 'bounds'> & {
-  parameters: Record<string, number>;
+/** A formula, points, an image, a mesh, a combination, or a function of the program, which never leaves its thread. */
+export interface SentPart {
+  formula?: string;
   cloud?: Cloud;
   given?: GivenFile | SentVoxels | SentFaces;
   program?: OfPlace | Batch | Pieces;
-};
+  solid?: { join: Solid['join']; of: SentPart[]; by: number };
+}
+/** Such a field with its parameters. Beside another one a formula has the other's surface as an operand. */
+export type SentField = SentPart & Pick<FieldRequest, 'parameters'> & Pick<Partial<FieldRequest>, 'bounds'>;
 /** Functions of a point; those of the program never leave its own thread. */
 export interface SentFunctions {
   spacing?: string | OfPlace;

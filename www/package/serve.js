@@ -4,8 +4,8 @@
  *
  * @module
  */
-import { nextBudget } from '../src/engine/bundle/budget.js';
 import { hasSimd } from '../src/engine/bundle/load.js';
+import { inSlices } from '../src/engine/bundle/slices.js';
 import { openGiven } from '../src/engine/files/open.js';
 import loadCore, { Core } from '../src/wasm/core/core.js';
 import loadPoints from '../src/wasm/points/points.js';
@@ -15,13 +15,11 @@ import { pause } from './pause.js';
 import { Program } from './program.js';
 
 /**
- * @import { Fault, Progress as CoreProgress } from '../src/engine/core-types.js'
+ * @import { Fault, Parameter, Progress as CoreProgress } from '../src/engine/core-types.js'
  * @import { Progress } from './index.js'
  * @import { Answered, Asked, Environment, Made, Said, SentField } from './protocol.js'
  */
 
-/** First budget of a loop, in units or slices of the core. */
-const FIRST_BUDGET = 64;
 const PROGRESS_MS = 50;
 /** The choices for an image and for a mesh, by their names in the core. */
 const OF_IMAGES = ['iso', 'label', 'smooth', 'dark', 'closed'];
@@ -144,23 +142,23 @@ export function serve({ post, load }) {
    * @param {{id: number, core: Core}} of @param {(budget: number) => T | undefined} slice
    * @param {() => Progress} [tell]
    */
-  async function inSlices({ id, core }, slice, tell) {
+  async function done({ id, core }, slice, tell) {
     let toldMs = performance.now();
-    for (let budget = FIRST_BUDGET; ; ) {
-      const before = performance.now();
+    const checked = (/** @type {number} */ budget) => {
       const made = slice(budget);
       const failure = programs.get(core)?.find((program) => program.failure)?.failure;
       if (failure) throw new Refusal('FieldError', failure.message, { cause: failure.cause });
-      if (made !== undefined) return made;
-      const after = performance.now();
-      budget = nextBudget(budget, after - before);
-      if (tell && after - toldMs > PROGRESS_MS) {
-        toldMs = after;
-        post({ id, progress: tell() });
-      }
-      await pause();
-      if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
-    }
+      return made;
+    };
+    const after = () => {
+      if (!tell || performance.now() - toldMs <= PROGRESS_MS) return;
+      toldMs = performance.now();
+      post({ id, progress: tell() });
+    };
+    const env = { nowMs: () => performance.now(), pause, interrupt: () => (asked.get(id) ? 'stop' : null) };
+    const { made, why } = await inSlices(checked, env, { after });
+    if (why !== null) throw new Refusal('AbortError', 'The sampling was aborted.');
+    return made;
   }
 
   /**
@@ -175,7 +173,7 @@ export function serve({ post, load }) {
       now = core.step(budget);
       return now.phase === 'done' ? now : undefined;
     };
-    const last = await inSlices(of, step, () => ({
+    const last = await done(of, step, () => ({
       phase: now.phase,
       particles: now.particles,
       fraction: now.fraction,
@@ -188,8 +186,13 @@ export function serve({ post, load }) {
    * Gives a core its field.
    * @param {SentField} field @param {{id: number, core: Core}} of
    */
-  async function taken({ program, cloud, given, ...request }, of) {
+  async function taken({ program, cloud, given, solid, ...request }, of) {
     const { core } = of;
+    if (solid) {
+      const parameters = await keptSolid(solid, request.parameters, of);
+      const answer = core.set_kept(request);
+      return answer.ok ? { ...answer, parameters: [...parameters, ...answer.parameters] } : answer;
+    }
     if (program) {
       const called = held(program, core);
       return core.set_function(called.call, request, called.labels);
@@ -197,9 +200,31 @@ export function serve({ post, load }) {
     if (given) return takenGiven(given, request, of);
     if (!cloud) return core.set_field(request);
     await loaded('points', loadPoints);
-    const fit = await fitted(cloud, (slice) => inSlices(of, slice));
+    const fit = await fitted(cloud, (slice) => done(of, slice));
     if ('error' in fit) throw new Refusal('InputError', fit.error);
     return core.set_points(fit.system, fit.about, request);
+  }
+
+  /**
+   * Has a core keep a combination. Returns the parameters of the formulas in it.
+   * @param {NonNullable<SentField['solid']>} solid @param {SentField['parameters']} parameters
+   * @param {{id: number, core: Core}} of
+   * @returns {Promise<Parameter[]>}
+   */
+  async function keptSolid({ join, of: operands, by }, parameters, of) {
+    const found = [];
+    for (const operand of operands) {
+      if (operand.solid) {
+        found.push(...(await keptSolid(operand.solid, parameters, of)));
+      } else {
+        const answer = await taken({ ...operand, parameters }, of);
+        if (!answer.ok) throw refusalOf(answer.error);
+        found.push(...answer.parameters);
+        of.core.keep();
+      }
+    }
+    of.core.combine(join, operands.length, by);
+    return found;
   }
 
   /**
@@ -260,7 +285,7 @@ export function serve({ post, load }) {
     const unknown = Object.keys(field.parameters).find((name) => !isKnown(name));
     if (unknown !== undefined) throw new Refusal('InputError', `The formula has no parameter “${unknown}” (params).`);
     if (message.type === 'sample') checkEffects(core, message);
-    const box = await inSlices(of, (budget) => core.fit(settings, type === 'moved', budget));
+    const box = await done(of, (budget) => core.fit(settings, type === 'moved', budget));
     if (!box.ok) throw refusalOf(box.error);
     if (type === 'sample' || !core.follow(settings, false)) {
       const start = core.start(settings);
@@ -269,27 +294,28 @@ export function serve({ post, load }) {
     core.plan(measure ? 'particles' : 'nothing', false);
     const particles = await run(of);
     const measuring = () => ({ phase: 'measuring', particles, fraction: core.fraction() });
-    const measured = () => inSlices(of, (budget) => core.measure('particles', budget), measuring);
+    const measured = () => done(of, (budget) => core.measure('particles', budget), measuring);
     let report = measure ? await measured() : null;
     if (report?.warnings.some(({ code }) => code === 'open')) {
       // Only the mesh, which evaluates the field, can tell which of the gaps are surface.
-      await inSlices(of, (budget) => core.join(budget));
+      await done(of, (budget) => core.join(budget));
       report = await measured();
     }
     for (const [name, value] of Object.entries(values)) {
       const taken = typeof value === 'string' ? value : held(value, core, `The function of the value ${name}`).call;
-      const fault = await inSlices(of, (budget) => core.add_value(name, taken, budget));
+      const fault = await done(of, (budget) => core.add_value(name, taken, budget));
       if (fault) throw refusalOf(fault);
     }
     const isRemeshed = measure && answer.mesh !== null && box.formula === '';
-    if (isRemeshed) await inSlices(of, (budget) => core.join(budget));
-    const change = isRemeshed ? await inSlices(of, (budget) => core.compare(budget)) : null;
+    if (isRemeshed) await done(of, (budget) => core.join(budget));
+    const change = isRemeshed ? await done(of, (budget) => core.compare(budget)) : null;
     const columns = Object.keys(values).map((name) => [name, core.added_value(name)]);
     return columnsOf(core, {
       count: particles,
       report,
       bounds: box.bounds,
-      parameters: box.parameters,
+      // A combination does not have those of its operands.
+      parameters: field.solid ? answer.parameters : box.parameters,
       image: box.image,
       original: box.mesh,
       change,
@@ -324,14 +350,14 @@ export function serve({ post, load }) {
       const bytes = core.particle_file(message.format);
       return [{ bytes }, bytes ? [bytes.buffer] : []];
     }
-    const about = await inSlices(of, (budget) => core.join(budget));
+    const about = await done(of, (budget) => core.join(budget));
     if (message.type === 'mesh') {
       const faces = core.triangles();
       if (message.weld) weld(faces, core.particle());
       const { volume, components, left_out: leftOut } = about;
       return [{ faces, volume, components, leftOut }, [faces.buffer]];
     }
-    const bytes = await inSlices(of, (budget) => core.mesh_file({ format: message.format }, budget));
+    const bytes = await done(of, (budget) => core.mesh_file({ format: message.format }, budget));
     if (!bytes) throw new Refusal('InputError', `The mesh cannot be written as ${message.format}: it is too large.`);
     return [{ bytes }, [bytes.buffer]];
   }

@@ -1,19 +1,43 @@
-import type { Bounds, MeshFormat, Progress, Report } from './index.js';
+import type { Bounds, MeshFormat, Options, Progress, Report, Share, Size } from './index.js';
 
 export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './index.js';
 
-/** What is sampled and how it is drawn. Missing entries stay as they are. */
-export interface ViewState {
+type InView<Value> = [Size] extends [Value] ? ([Value] extends [Size] ? Share : Value) : Value;
+/** The options of `sample` that a view has: `null` stands for the default. Sizes are shares of the box diagonal. */
+type Sampled = {
+  [Name in keyof Omit<
+    Options,
+    | 'bounds'
+    | 'formula'
+    | 'params'
+    | 'values'
+    | 'iso'
+    | 'label'
+    | 'smooth'
+    | 'darkInside'
+    | 'edges'
+    | 'measure'
+    | 'signal'
+    | 'onProgress'
+    | 'spacing'
+  >]?: InView<Exclude<Options[Name], undefined>> | null;
+};
+/**
+ * What is sampled and how it is drawn, in the words of `sample`: `{formula, params: {a: 1}, count: 5000}`. Missing
+ * entries stay as they are.
+ */
+export interface ViewState extends Sampled {
   /** a surface of the gallery, such as `gyroid`, or a model from points; null for the default */
   surface?: string | null;
   formula?: string;
-  parameters?: Record<string, number>;
+  /** values of the names in the formula */
+  params?: Record<string, number>;
+  /** distance between neighbours: a share of the box diagonal, or a formula */
+  spacing?: string | null;
   /** null: a box that fits the surface */
   bounds?: Bounds | null;
   /** hides points with normal · p > offset */
   plane?: { normal: [number, number, number]; offset: number } | null;
-  /** all settings that are not the default, by their names: `{size_mode: 'count', count: 5000, method: 'refined'}` */
-  settings?: Record<string, number | string>;
   view?: {
     colour?: string;
     draw?: 'discs' | 'spheres' | 'mesh';
@@ -45,7 +69,7 @@ export interface View {
    * defaults
    */
   readonly ready: Promise<Report | null>;
-  /** a copy of the whole state */
+  /** a copy of the whole state, without what is the default */
   readonly state: ViewState;
   /** the last report; null while particles are being placed */
   readonly report: Report | null;

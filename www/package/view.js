@@ -10,6 +10,7 @@ import { defaultState, mergeState } from '../src/engine/share/state.js';
 import { description } from '../src/engine/store.js';
 import { BACKENDS } from '../src/engine/view/backends.js';
 import { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
+import { appliedTo, engineChange, namesOf, viewState } from './state.js';
 
 export { DisposedError, FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
 
@@ -77,7 +78,8 @@ export function createView(host, state = {}, { backend } = {}) {
   if (backend !== undefined && !BACKENDS.includes(backend))
     throw new InputError(`createView(): backend is one of ${BACKENDS.join(', ')}, not ${backend}.`);
   if (getComputedStyle(host).position === 'static') host.style.position = 'relative';
-  const first = { ...state };
+  const { rest, set } = engineChange(state);
+  const first = { ...rest, settings: set };
   const engine = createEngine({ host, state: first, backend });
   const { alive, end } = lifetime();
   /** The error of an invalid first state, until another state is set. @type {Signal<Error | null>} */
@@ -85,8 +87,8 @@ export function createView(host, state = {}, { backend } = {}) {
   // Anything requested before the engine has the first state would be overwritten by it.
   const begun = once(engine, () => engine.state.value.surface !== '');
 
-  /** The invalid parts of a change of a state. @param {State} now @param {ViewState} change */
-  const refused = (now, change) => mergeState(now, { ...change }, description(engine), false).reset.join(', ');
+  /** The invalid parts of a change of a state. @param {State} now @param {Record<string, unknown>} patch */
+  const refused = (now, patch) => namesOf(mergeState(now, patch, description(engine), false).reset);
 
   /** @param {() => void} act */
   async function after(act) {
@@ -110,7 +112,7 @@ export function createView(host, state = {}, { backend } = {}) {
   return {
     ready,
     get state() {
-      return structuredClone(engine.state.value);
+      return viewState(engine.state.value, engine.description.value);
     },
     get report() {
       return structuredClone(engine.report.value);
@@ -119,12 +121,14 @@ export function createView(host, state = {}, { backend } = {}) {
       const kind = engine.backend.value;
       return kind === 'starting' ? null : kind;
     },
-    set(patch) {
-      const change = { ...patch };
+    async set(patch) {
+      const change = engineChange(patch);
       return after(() => {
-        const names = refused(engine.state.value, change);
+        const now = engine.state.value;
+        const whole = appliedTo(change, now, description(engine));
+        const names = refused(now, whole);
         if (names !== '') throw new InputError(`Not valid, and left as it was: ${names}.`);
-        engine.set(change);
+        engine.set(whole);
         unread.value = null;
       });
     },

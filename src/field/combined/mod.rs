@@ -1,4 +1,4 @@
-//! Fields that combine any two others: unions, intersections and differences of solids, smooth
+//! Fields that combine others: unions, intersections and differences of solids, smooth
 //! unions, and offsets.
 //!
 //! A minimum or a maximum of two fields has creases where the two surfaces meet. They are searched
@@ -13,7 +13,10 @@ mod evaluator;
 mod rule;
 mod ties;
 
-use super::{Evaluator, Facts, Field, FieldError, Frame, IntoField, Jet, Piecewise, Within, edges};
+use super::given::shared;
+use super::{
+    Evaluator, Facts, Field, FieldError, Frame, IntoField, IntoFields, Jet, Piecewise, Within, edges,
+};
 use crate::math::Bounds;
 use crate::slices::Work;
 use core::fmt::{self, Debug, Formatter};
@@ -48,43 +51,51 @@ impl Deref for Combined {
     }
 }
 
-/// The union of two solids: min(a, b), which is negative where one of the two is.
+/// The union of solids: min(a, b, …), which is negative where one of them is.
 ///
-/// The operands can be anything that can be [sampled](IntoField), including functions of the
-/// program and models from points. Where their surfaces meet at an angle the particles lie on the
-/// edge, and the mesh is closed along it. Edges are searched for in cells of a 128th of the box: a
-/// smaller loop may be missed. There is no proof of completeness. Two formulas are better written
-/// as one with `min`, `max` and `-`, which has both.
+/// The solids are an array, a vector or a tuple of anything that can be [sampled](IntoField),
+/// including functions of the program and models from points. Where their surfaces meet at an angle
+/// the particles lie on the edge, and the mesh is closed along it. Edges are searched for in cells
+/// of a 128th of the box: a smaller loop may be missed. There is no proof of completeness. Formulas
+/// are better written as one with `min`, `max` and `-`, which has both.
 ///
 /// An operand should have a gradient where it is zero, as a distance has. The union is undefined
 /// where one operand is.
 ///
+/// # Panics
+///
+/// If there are no solids.
+///
 /// ```
 /// use marching_particles::glam::{DVec3, dvec3};
-/// use marching_particles::{Settings, sample, union};
+/// use marching_particles::{Formula, Settings, sample, union};
 ///
-/// let ball = |centre: DVec3| move |p: DVec3| p.distance(centre) - 1.0;
-/// let both = union(ball(dvec3(-0.5, 0.0, 0.0)), ball(dvec3(0.5, 0.0, 0.0)));
-/// let sample = sample(both, &Settings::with_count(2_000))?;
+/// // Solids of one type are an array, of several types a tuple.
+/// let ball = |x: f64| move |p: DVec3| p.distance(dvec3(x, 0.0, 0.0)) - 1.0;
+/// let chain = union([-1.0, 0.0, 1.0].map(ball));
+/// let rod = Formula::parse("max(hypot(y, z) - 0.3, |x| - 3)")?;
+/// let sample = sample(union((chain, rod)), &Settings::with_count(4_000))?;
 /// assert!(sample.mesh().topology.is_closed());
-/// assert_eq!(sample.report().proof.creases, Some(1));
-/// # Ok::<(), marching_particles::Error>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn union<A, B, K, L>(a: A, b: B) -> Combined
-where
-    A: IntoField<K, Field: 'static>,
-    B: IntoField<L, Field: 'static>,
-{
-    Combined(least(shared(a), shared(b)))
+pub fn union<K>(solids: impl IntoFields<K>) -> Combined {
+    Combined(folded(solids, least))
 }
 
-/// The intersection of two solids: max(a, b), which is negative where both are. See [`union`].
-pub fn intersection<A, B, K, L>(a: A, b: B) -> Combined
-where
-    A: IntoField<K, Field: 'static>,
-    B: IntoField<L, Field: 'static>,
-{
-    Combined(greatest(shared(a), shared(b)))
+/// The intersection of solids: max(a, b, …), which is negative where all are. See [`union`].
+///
+/// # Panics
+///
+/// If there are no solids.
+pub fn intersection<K>(solids: impl IntoFields<K>) -> Combined {
+    Combined(folded(solids, greatest))
+}
+
+fn folded<K>(
+    solids: impl IntoFields<K>,
+    join: fn(Arc<dyn Field>, Arc<dyn Field>) -> Arc<dyn Field>,
+) -> Arc<dyn Field> {
+    solids.into_fields().into_iter().reduce(join).expect("a combination has at least one solid")
 }
 
 /// The difference of two solids: max(a, −b), which is negative where a is and b is not. See
@@ -127,11 +138,6 @@ where
     A: IntoField<K, Field: 'static>,
 {
     Combined(turned(&shared(a), false, distance))
-}
-
-fn shared<A: IntoField<K, Field: 'static>, K>(given: A) -> Arc<dyn Field> {
-    let field = given.into_field();
-    field.operand().unwrap_or_else(|| Arc::new(field))
 }
 
 /// The surface of a field, which ends where another field becomes positive.

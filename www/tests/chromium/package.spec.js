@@ -190,11 +190,11 @@ test('a view in an element of a page has a state, and rejects what is wrong', { 
     `<script type="importmap">${JSON.stringify(modules)}</script>
 <div id="host" style="width: 320px; height: 240px"></div>
 <script type="module">import { createView } from 'marching-particles/view';
-const view = createView(host, { formula: 'x^2 + y^2 + z^2 = a', settings: { size_mode: 'count', count: 400 } }, { backend: 'canvas2d' });
+const view = createView(host, { formula: 'x^2 + y^2 + z^2 = a', count: 400 }, { backend: 'canvas2d' });
 const told = [];
 const end = view.on('report', ({ count }) => told.push(count));
 const { components } = await view.ready;
-const moved = await view.set({ parameters: { a: 2 } });
+const moved = await view.set({ params: { a: 2 } });
 const wrong = await view.set({ formula: 'x +' }).catch(({ name }) => name);
 const none = await view.set({ formula: 'x^2 + y^2 + 1' }).catch(({ name }) => name);
 await view.set({ formula: 'x^2 + y^2 + z^2 = 1' });

@@ -61,6 +61,12 @@ export class Core {
      */
     code(language: string): Answer<Code, string>;
     /**
+     * Replaces the `count` fields that were kept last by their combination. A smooth union has the
+     * width `by`, an offset that distance; `difference` and `smoothUnion` take two fields, `offset`
+     * one.
+     */
+    combine(how: 'union' | 'intersection' | 'difference' | 'smoothUnion' | 'offset', count: number, by: number): void;
+    /**
      * The distance of the joined mesh from the opened one, doing up to `budget` slices of the
      * work: `MeshChange` once complete, undefined before; null unless the surface is that of a
      * mesh without a formula.
@@ -127,6 +133,10 @@ export class Core {
      * complete, nothing before.
      */
     join(budget: number): MeshAnswer | undefined;
+    /**
+     * Keeps the present field, for [`Core::combine`].
+     */
+    keep(): void;
     /**
      * Keeps one voxel in `step` along each axis of the image in the file that was begun.
      */
@@ -273,6 +283,12 @@ export class Core {
      * called again, and the run ends.
      */
     set_function(_function: (points: Float64Array, out: Float64Array, piece?: number) => void, request: Partial<FieldRequest>, labels?: (points: Float64Array, out: Uint32Array) => void): Answer<FieldAnswer, Fault>;
+    /**
+     * Changes the field to the one that was kept last. Of the `FieldRequest` the box counts, and a
+     * formula with the field as an operand. Returns an `Answer` with `FieldAnswer`. After an error
+     * the last valid field stays.
+     */
+    set_kept(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
      * parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges` and `smooth`

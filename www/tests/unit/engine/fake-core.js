@@ -318,6 +318,11 @@ export function fakeCore({
     set_function: () => {
       throw new Error('not here');
     },
+    keep() {},
+    combine() {},
+    set_kept: () => {
+      throw new Error('not here');
+    },
     space: () => null,
     add_value: () => null,
     value_names: () => [],
