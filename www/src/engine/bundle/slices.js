@@ -10,7 +10,7 @@
 /** Target duration of a slice: short enough for a prompt Stop, long enough to make the overhead of a call small. */
 const SLICE_MS = 6;
 const LARGEST_BUDGET = 1 << 22;
-/** First budget, in units of up to a third of a millisecond, so that the first slice is short, too. */
+/** First budget, so small that the first slice is short, too. */
 const FIRST_BUDGET = 32;
 
 /** Returns the budget that would have taken `targetMs`. It changes by at most a factor of 4 down or 2 up per slice. */
@@ -27,19 +27,21 @@ export function nextBudget(/** @type {number} */ budget, /** @type {number} */ t
  * @param {SliceEnv<Why>} env
  * @param {object} [how]
  * @param {number} [how.targetMs]
+ * @param {number} [how.first]  the first budget of each phase
  * @param {() => string} [how.phase]  the phase of the next slice: each has its own budget, since units differ
  * @param {(tookMs: number) => void} [how.after]  called after each slice
  * @returns {Promise<{made: T, why: null} | {made: null, why: Why}>}
  */
-export async function inSlices(slice, env, { targetMs, phase = () => '', after = () => {} } = {}) {
+export async function inSlices(slice, env, how = {}) {
   const { nowMs, pause, interrupt = () => null } = env;
+  const { targetMs, first = FIRST_BUDGET, phase = () => '', after = () => {} } = how;
   /** @type {Record<string, number>} */
   const budgets = {};
   for (;;) {
     const why = interrupt();
     if (why !== null) return { made: null, why };
     const present = phase();
-    const budget = budgets[present] ?? FIRST_BUDGET;
+    const budget = budgets[present] ?? first;
     const beforeMs = nowMs();
     const made = slice(budget);
     const tookMs = nowMs() - beforeMs;

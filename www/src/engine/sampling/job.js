@@ -18,6 +18,8 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @import { ColumnsMessage, DoneMessage, Env, Job, Memory, Mesh } from './types.js'
  */
 
+/** First budget of a phase. No unit takes more than a third of a millisecond, so a Stop takes effect within 100 ms. */
+const FIRST_BUDGET = 256;
 /** Shortest interval between column messages: about one frame at 60 Hz. */
 const PICTURE_MS = 15;
 
@@ -264,6 +266,7 @@ class Execution {
     core.plan(this.#isLive ? 'nothing' : 'front_too', env.mesh());
     this.#beatMs = env.nowMs();
     const { made: last, why } = await inSlices((budget) => this.#step(budget), env, {
+      first: FIRST_BUDGET,
       phase: () => phase,
       after: (tookMs) => {
         this.seconds[clockOf(phase)] += tookMs / 1000;
