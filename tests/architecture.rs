@@ -213,7 +213,7 @@ const ROOMS: [Room; 6] = [
             // The one part of a formula in which another field is an operand.
             ("formula/operand", &["combined"]),
             // What its operands do not know of their pieces is found out.
-            ("combined", &["edges"]),
+            ("combined", &["edges", "given"]),
             ("edges", &[]),
             ("piecewise", &["differences"]),
             ("descent", &[]),
@@ -329,6 +329,31 @@ fn packages_in(folder: &str) -> BTreeSet<String> {
         text.lines().find_map(|line| quoted(line, "name").map(str::to_owned))
     };
     manifests.into_iter().filter_map(name).collect()
+}
+
+/// What is published together has one version; npm's, Python's and cargo's stand in files of their
+/// own.
+#[test]
+fn every_published_manifest_has_one_version() {
+    let read = |file: &str| fs::read_to_string(root().join(file)).expect(file);
+    let version = |file: &str| {
+        let text = read(file);
+        let found = text.lines().find_map(|line| {
+            let json = line.trim().strip_prefix("\"version\": \"").and_then(|rest| rest.split('"').next());
+            quoted(line, "version").or(json).map(str::to_owned)
+        });
+        found.unwrap_or_else(|| panic!("{file} has no version"))
+    };
+    let own = version("Cargo.toml");
+    for file in
+        ["src/command/Cargo.toml", "python/Cargo.toml", "www/package/package.json", "www/package.json"]
+    {
+        assert_eq!(version(file), own, "{file}");
+    }
+    // Python takes the version of its crate, the command line depends on the library of its own.
+    assert!(read("python/pyproject.toml").contains("dynamic = [\"version\"]"));
+    let command = read("src/command/Cargo.toml");
+    assert!(command.contains(&format!("marching-particles = {{ version = \"{own}\"")), "{command}");
 }
 
 /// A package that a profile does not name is compiled without optimisation, and nothing says so.
