@@ -369,8 +369,8 @@ impl Core {
     }
 
     /// Replaces the `count` fields that were kept last by their combination. A smooth union has the
-    /// width `by`, an offset that distance; `difference` and `smoothUnion` take two fields, `offset`
-    /// one.
+    /// width `by`, an offset that distance. A `difference` and a `smoothUnion` take two fields, an
+    /// `offset` one.
     pub fn combine(
         &mut self,
         #[wasm_bindgen(

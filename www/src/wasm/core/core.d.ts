@@ -62,8 +62,8 @@ export class Core {
     code(language: string): Answer<Code, string>;
     /**
      * Replaces the `count` fields that were kept last by their combination. A smooth union has the
-     * width `by`, an offset that distance; `difference` and `smoothUnion` take two fields, `offset`
-     * one.
+     * width `by`, an offset that distance. A `difference` and a `smoothUnion` take two fields, an
+     * `offset` one.
      */
     combine(how: 'union' | 'intersection' | 'difference' | 'smoothUnion' | 'offset', count: number, by: number): void;
     /**
