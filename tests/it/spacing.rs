@@ -333,3 +333,14 @@ fn mistakes_in_a_formula_are_those_of_formulas() {
         assert!(error.to_string().starts_with(says), "{text}: {error}");
     }
 }
+
+#[test]
+fn a_spacing_that_falls_to_zero_is_limited_by_the_largest() {
+    let sphere = Formula::parse("x^2 + y^2 + z^2 = 1").expect("a formula");
+    let spacing = Spacing::parse("1 + z").expect("a formula");
+    let made = sample(sphere, &Settings::with_count(1_000).spaced(spacing)).expect("a sample");
+    let radii = &made.particles().radius;
+    let [least, most] = radii.iter().fold([f32::INFINITY, 0.0], |[a, b], &r| [a.min(r), b.max(r)]);
+    assert!(least > most / 2_000.0, "{least} of {most}");
+    assert!((900..1_100).contains(&made.report().count), "{}", made.report().count);
+}

@@ -321,7 +321,9 @@ fn limits_of(settings: &Settings, bounds: &Bounds, samples: &[SurfaceSample]) ->
     let [least, greatest] =
         asked.fold([f32::INFINITY, 0.0], |[least, greatest], asked| [least.min(asked), greatest.max(asked)]);
     if settings.size_mode == SizeMode::Count && least <= greatest {
-        return [DEEPER * least, greatest];
+        // Their ratio is at most that of radii that are given.
+        let floor = (LEAST_SHARE / MOST_SHARE) as f32 * greatest;
+        return [(DEEPER * least).max(floor), greatest];
     }
     [LEAST_SHARE, MOST_SHARE].map(|share| (share * bounds.diagonal()) as f32)
 }
