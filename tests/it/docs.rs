@@ -74,6 +74,22 @@ fn camel(name: &str) -> String {
     words.fold(first, |text, word| text + &word[..1].to_uppercase() + &word[1..])
 }
 
+/// The names of settings in Python and for npm that are not those of their arguments, since the
+/// doors give them in another form: the box by its corners, the border of points where these are
+/// fitted.
+const ELSEWHERE: [(&str, &str, &str); 2] = [
+    ("box_mode", "`bounds`", "bounds"),
+    ("beyond_points", "`beyond_points` of `fit_points`", "beyondPoints"),
+];
+
+/// The names of a setting in Python and for npm.
+fn names(setting: &Setting) -> (String, String) {
+    match ELSEWHERE.iter().find(|(name, ..)| *name == setting.name) {
+        Some((_, python, npm)) => ((*python).to_owned(), (*npm).to_owned()),
+        None => (format!("`{}`", setting.argument()), camel(setting.argument())),
+    }
+}
+
 fn settings_table() -> String {
     let mut rows = String::from(
         "| Setting | Command line | Python | npm | Values | Default | Used if | Meaning |\n\
@@ -81,12 +97,7 @@ fn settings_table() -> String {
     );
     for setting in &settings() {
         let conditions: Vec<String> = setting.when.iter().map(condition).collect();
-        // In the packages the box is given by its corners.
-        let (python, npm) = match setting.name {
-            "box_mode" => ("`bounds`".to_owned(), "bounds".to_owned()),
-            "beyond_points" => ("`beyond_points` of `fit_points`".to_owned(), camel(setting.argument())),
-            _ => (format!("`{}`", setting.argument()), camel(setting.argument())),
-        };
+        let (python, npm) = names(setting);
         rows += &format!(
             "| `{}` | `--{}` | {python} | `{npm}` | {} | {} | {} | {} |\n",
             setting.name,
@@ -266,6 +277,55 @@ fn everything_that_is_published_has_one_version() {
 #[test]
 fn the_table_of_settings_is_that_of_the_settings() {
     check_table("docs/settings.md", "settings", &settings_table());
+}
+
+/// The type of an argument in the text that declares a function or an interface.
+fn declared<'a>(text: &'a str, within: (&str, &str), name: &str, end: &str) -> &'a str {
+    let (_, text) = text.split_once(within.0).expect(within.0);
+    let (text, _) = text.split_once(within.1).expect(within.1);
+    let begin = format!("\n{name}: ");
+    let (_, text) = text.split_once(&begin).unwrap_or_else(|| panic!("{} has no {name}", within.0));
+    text.split_once(end).map_or(text, |(kind, _)| kind)
+}
+
+#[test]
+fn every_setting_is_declared_with_its_kind_in_python_and_for_npm() {
+    let typescript = read("www/package/index.d.ts");
+    let python = read("python/package/marching_particles/__init__.pyi");
+    for setting in &settings() {
+        let argument = setting.argument();
+        let is_flag = ["adaptive", "closed", "periodic"].contains(&argument);
+        let choices = || setting.choices.iter().map(|choice| choice.value);
+        let kinds = |flag: &str, whole: &str, number: &str, size: &str, formula: &str, quote: char| {
+            match setting.kind {
+                _ if is_flag => vec![flag.to_owned()],
+                _ if argument == "count" => vec![whole.to_owned()],
+                SettingKind::Choice => choices().map(|value| format!("{quote}{value}{quote}")).collect(),
+                SettingKind::Integer => vec![whole.to_owned()],
+                SettingKind::Formula => vec![formula.to_owned()],
+                _ if setting.is_share() => vec![size.to_owned()],
+                _ => vec![number.to_owned()],
+            }
+        };
+        let hold = |door: &str, found: &str, kinds: Vec<String>| {
+            for kind in kinds {
+                assert!(found.contains(&kind), "{argument} is {found} {door}, without {kind}");
+            }
+        };
+        if setting.name == "box_mode" {
+            continue;
+        }
+        let name = format!("  {}?", names(setting).1);
+        let found = declared(&typescript, ("export interface Options {", "\n}"), &name, ";\n");
+        hold("for npm", found, kinds("boolean", "number", "number", "Size", "number | string", '\''));
+        let function = if setting.name == "beyond_points" { "def fit_points(" } else { "def sample(" };
+        let found = declared(&python, (function, "\n) -> "), &format!("    {argument}"), ",\n");
+        hold(
+            "in Python",
+            found,
+            kinds("bool", "SupportsIndex", "SupportsFloat", "_Size", "SupportsFloat, str", '"'),
+        );
+    }
 }
 
 #[test]
