@@ -79,7 +79,7 @@ impl Deref for Combined {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn union<K>(solids: impl IntoFields<K>) -> Combined {
-    Combined(folded(solids, least))
+    folded(solids, Rule::Least)
 }
 
 /// The intersection of solids: max(a, b, …), which is negative where all are. See [`union`].
@@ -88,14 +88,12 @@ pub fn union<K>(solids: impl IntoFields<K>) -> Combined {
 ///
 /// If there are no solids.
 pub fn intersection<K>(solids: impl IntoFields<K>) -> Combined {
-    Combined(folded(solids, greatest))
+    folded(solids, Rule::Greatest)
 }
 
-fn folded<K>(
-    solids: impl IntoFields<K>,
-    join: fn(Arc<dyn Field>, Arc<dyn Field>) -> Arc<dyn Field>,
-) -> Arc<dyn Field> {
-    solids.into_fields().into_iter().reduce(join).expect("a combination has at least one solid")
+fn folded<K>(solids: impl IntoFields<K>, rule: Rule) -> Combined {
+    let join = |a, b| -> Arc<dyn Field> { Arc::new(Combination::new(rule, vec![a, b])) };
+    Combined(solids.into_fields().into_iter().reduce(join).expect("a combination has at least one solid"))
 }
 
 /// The difference of two solids: max(a, −b), which is negative where a is and b is not. See
