@@ -660,6 +660,14 @@ fn surfaces_lists_the_gallery() {
 }
 
 #[test]
+fn every_setting_is_an_option() {
+    let help = stdout(&run(&["sample", "--help"]));
+    for setting in marching_particles::session::settings() {
+        assert!(help.contains(&format!("--{}", setting.option())), "--{} is not there", setting.option());
+    }
+}
+
+#[test]
 fn help_explains_units_defaults_and_examples() {
     let help = stdout(&run(&["sample", "--help"]));
     for part in ["Formulas:", "Examples:", "Exit codes:", "0.6%", "smin(a,b,k)", "200,000"] {
