@@ -253,7 +253,7 @@ export function serve({ post, load }) {
       if (opened && !opened.ok) throw new Refusal('InputError', opened.message);
     }
     if (asked.get(id)) throw new Refusal('AbortError', 'The sampling was aborted.');
-    await inSlices(of, (budget) => (core.make_opened(request, budget) === 1 ? true : undefined));
+    await done(of, (budget) => (core.make_opened(request, budget) === 1 ? true : undefined));
     const answer = core.set_opened(request);
     // The field has its own copy, which shares the voxels and faces.
     core.close_opened();

@@ -5,7 +5,7 @@
  *
  * @module
  */
-import { nextBudget } from '../bundle/budget.js';
+import { inSlices } from '../bundle/slices.js';
 import { FIRST_SLICES, openGiven } from './open.js';
 
 /**
@@ -106,17 +106,15 @@ export class FileKeeper {
    */
   async #make(core, request, { nowMs, pause, tell }) {
     const field = this.#field;
-    for (let slices = FIRST_SLICES; this.#field === field; ) {
-      const before = nowMs();
-      const share = core.make_opened(request, slices);
-      if (share === 1) {
-        field.isMade = true;
-        return;
-      }
-      slices = nextBudget(slices, nowMs() - before, MAKE_MS);
+    const slice = (/** @type {number} */ budget) => {
+      const share = core.make_opened(request, budget);
+      field.isMade = share === 1;
+      if (field.isMade) return true;
       tell(share);
-      await pause();
-    }
+      return undefined;
+    };
+    const interrupt = () => (this.#field === field ? null : 'other');
+    await inSlices(slice, { nowMs, pause, interrupt }, { first: FIRST_SLICES, targetMs: MAKE_MS });
   }
 
   /** @param {Core} core @param {KeyedFile} file @param {Partial<FieldRequest>} request @returns {FieldAnswer} */

@@ -4,8 +4,8 @@
  *
  * @module
  */
-import { nextBudget } from '../bundle/budget.js';
 import { words } from '../bundle/load.js';
+import { inSlices } from '../bundle/slices.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
@@ -145,19 +145,19 @@ async function openedImage(core, { name, file, beside, step = 1 }, env) {
  * @param {Core} core @param {string} label @param {OpenEnv} env
  */
 async function openedInSlices(core, label, { tell, isOver, nowMs, pause }) {
-  for (let slices = FIRST_SLICES; ; ) {
-    const before = nowMs();
-    const answer = core.open_step(slices);
-    if (typeof answer === 'number') {
-      slices = nextBudget(slices, nowMs() - before);
-      tell(label, READ_SHARE + (1 - READ_SHARE) * answer);
-      await pause();
-      if (!isOver()) continue;
-      core.begin_file(0);
-      return null;
-    }
-    if (!answer.ok) throw new Refusal(answer.error.kind, answer.error.message);
-    const { ok: _, ...facts } = answer;
-    return facts;
+  const opening = (/** @type {number} */ budget) => {
+    const answer = core.open_step(budget);
+    if (typeof answer !== 'number') return answer;
+    tell(label, READ_SHARE + (1 - READ_SHARE) * answer);
+    return undefined;
+  };
+  const interrupt = () => (isOver() ? 'over' : null);
+  const { made: answer } = await inSlices(opening, { nowMs, pause, interrupt }, { first: FIRST_SLICES });
+  if (!answer) {
+    core.begin_file(0);
+    return null;
   }
+  if (!answer.ok) throw new Refusal(answer.error.kind, answer.error.message);
+  const { ok: _, ...facts } = answer;
+  return facts;
 }
