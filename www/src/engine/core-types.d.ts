@@ -1089,16 +1089,6 @@ export type MeshPart = {
   rim: MeshBorder | null,
 };
 
-/** How far the opening of a mesh is. */
-export type MeshProgress = {
-  /** What is done at present, in words. */
-  label: string,
-  /** Share of all work that is done. */
-  fraction: number,
-  /** Whether the mesh is open. */
-  done: boolean,
-};
-
 /** The distance from a mesh on a grid. */
 export type MeshScan = {
   /** Voxels along each axis. */

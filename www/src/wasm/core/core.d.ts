@@ -194,16 +194,16 @@ export class Core {
      */
     open_image(name: string, beside: (name: string) => Uint8Array | undefined): void;
     /**
-     * Opens a triangle mesh file, for [`Core::set_opened`]. Returns the reason if that fails, else
-     * null. After an error the previous file stays open.
+     * Begins to open the triangle mesh in the file whose bytes have been added, for
+     * [`Core::set_opened`]. [`Core::open_step`] does the work.
      */
-    open_mesh(name: string, bytes: Uint8Array | number[]): Fault | null;
+    open_mesh(name: string): void;
     /**
-     * Does up to `budget` slices of the work of opening an image, for [`Core::set_opened`].
-     * Returns the share that is done; at the end an `Answer` with `ImageFacts`. After an error the
-     * last valid image stays.
+     * Does up to `budget` slices of the work of opening a file, for [`Core::set_opened`]. Returns
+     * the share that is done; at the end an `Answer`, of an image with `ImageFacts`. After an
+     * error the last valid file stays.
      */
-    open_step(budget: number): number | Answer<ImageFacts, Fault>;
+    open_step(budget: number): number | Answer<ImageFacts | object, Fault>;
     /**
      * Opens an image from an array: the bytes of voxels of a type such as `int16`, the index along
      * the first axis changing fastest, and the affine map from indices to points, row by row.
@@ -291,9 +291,9 @@ export class Core {
     set_kept(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
-     * parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges` and `smooth`
-     * of a mesh), the box, and a formula with the surface as an operand. Returns an `Answer` with
-     * `FieldAnswer`. After an error the last valid field stays.
+     * parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges`, `borders` and
+     * `smooth` of a mesh), the box, and a formula with the surface as an operand. Returns an
+     * `Answer` with `FieldAnswer`. After an error the last valid field stays.
      */
     set_opened(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
