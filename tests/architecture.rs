@@ -24,7 +24,7 @@ const ROOMS: [Room; 6] = [
             // A box is found before anything is sampled.
             ("extent", &["math", "slices", "field"]),
             // Three-dimensional images and their files: fields like any other.
-            ("image", &["math", "field"]),
+            ("image", &["math", "slices", "field"]),
             // From a file to a field.
             ("pointcloud", &["math", "field", "spatial", "topology", "slices"]),
             // From a triangle mesh to a field. Its files are read as those of points are, and a
@@ -153,11 +153,13 @@ const ROOMS: [Room; 6] = [
             ("placement", &[]),
             ("kernel", &[]),
             ("otsu", &[]),
-            ("filter", &[]),
+            ("smooth", &["voxels"]),
+            ("filter", &["smooth"]),
             ("bricks", &["filter"]),
             ("bounds", &["bricks", "kernel"]),
             ("field", &["bricks", "kernel", "placement"]),
-            ("smooth", &["voxels"]),
+            ("section", &["bricks"]),
+            ("coarser", &["voxels"]),
             ("labels", &["smooth", "voxels"]),
             ("read", &["placement", "voxels"]),
             ("choice", &["field", "smooth", "labels", "otsu"]),

@@ -566,7 +566,7 @@ fn a_surface_that_the_border_cuts_can_be_closed_there() {
             let index = image.placement().index(p).to_array();
             let beyond = (0..3).map(|a| (-index[a]).max(index[a] - last[a])).fold(f64::MIN, f64::max);
             // Within the image the surface is the same, but for what the border adds to the spline;
-            // beyond it there is the cap at half a voxel, with rounded edges.
+            // beyond it there is the cap at half a voxel, to a tenth of one, with rounded edges.
             assert!(beyond < 0.7, "{index:?}");
             if beyond < -3.0 {
                 let (value, gradient) = open.field().value_and_gradient(p);
@@ -577,7 +577,7 @@ fn a_surface_that_the_border_cuts_can_be_closed_there() {
                 image.placement().point(DVec3::from_array([0, 1, 2].map(|a| index[a].clamp(0.0, last[a])))),
             );
             if beyond > 0.3 && inner == 2 && depth < -300.0 {
-                assert!((beyond - 0.5).abs() < 0.05, "{index:?}");
+                assert!((beyond - 0.5).abs() < 0.1, "{index:?}");
             }
         }
     }

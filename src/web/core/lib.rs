@@ -297,8 +297,8 @@ impl Core {
     }
 
     /// Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
-    /// parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges`, `borders` and
-    /// `smooth` of a mesh), the box, and a formula with the surface as an operand. Returns an
+    /// parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges`, `borders`
+    /// and `smooth` of a mesh), the box, and a formula with the surface as an operand. Returns an
     /// `Answer` with `FieldAnswer`. After an error the last valid field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_opened(
@@ -313,8 +313,9 @@ impl Core {
         }))
     }
 
-    /// The voxels of the image in a plane: at `place`, nine numbers for a corner and the steps along
-    /// two directions, with so many points along these. NaN outside the image; empty without one.
+    /// The voxels of the image in a plane: at `place`, nine numbers for a corner and the steps
+    /// along two directions, with so many points along these. NaN outside the image; empty without
+    /// one.
     pub fn section(&self, place: &[f64], width: usize, height: usize) -> Vec<f32> {
         let [corner, across, along] = core::array::from_fn(|k| DVec3::from_slice(&place[3 * k..]));
         let section = Section { corner, steps: [across, along], size: [width, height] };

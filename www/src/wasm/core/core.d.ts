@@ -262,8 +262,9 @@ export class Core {
      */
     seams(): Uint32Array<ArrayBuffer>;
     /**
-     * The voxels of the image in a plane: at `place`, nine numbers for a corner and the steps along
-     * two directions, with so many points along these. NaN outside the image; empty without one.
+     * The voxels of the image in a plane: at `place`, nine numbers for a corner and the steps
+     * along two directions, with so many points along these. NaN outside the image; empty without
+     * one.
      */
     section(place: Float64Array | number[], width: number, height: number): Float32Array<ArrayBuffer>;
     /**
@@ -291,8 +292,8 @@ export class Core {
     set_kept(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a surface of the last opened file. A `FieldRequest` gives the file's
-     * parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges`, `borders` and
-     * `smooth` of a mesh), the box, and a formula with the surface as an operand. Returns an
+     * parameters (`iso`, `label`, `smooth`, `dark` and `closed` of an image, `edges`, `borders`
+     * and `smooth` of a mesh), the box, and a formula with the surface as an operand. Returns an
      * `Answer` with `FieldAnswer`. After an error the last valid field stays.
      */
     set_opened(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
