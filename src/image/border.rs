@@ -9,9 +9,9 @@ const ADDED: usize = 4;
 impl Image {
     /// The image with [`ADDED`] voxels more at each border and a cap half a voxel beyond the
     /// outermost centres, at the faces of the outermost voxels. It is the intersection of the solid
-    /// with a box: a voxel's distance from `iso` is that of the nearest one of the image, or that of
-    /// the box if it is less, which rises by the slope of the values at the surface. So the edges
-    /// of the cap are rounded by about a voxel. Made in slices of work.
+    /// with a box: a voxel's distance from `iso` is that of the nearest one of the image, or that
+    /// of the box if it is less, which rises by the slope of the values at the surface. So the
+    /// edges of the cap are rounded by about a voxel. Made in slices of work.
     pub(super) async fn closed_at(&self, iso: f64, is_dark_inside: bool) -> Result<Self, ImageError> {
         let sign = if is_dark_inside { -1.0 } else { 1.0 };
         let size = self.size.map(|n| n + 2 * ADDED);

@@ -51,10 +51,10 @@ fn gaussian(deviation: f64) -> Vec<f32> {
 }
 
 /// Blurs voxels by a Gaussian along each axis in turn, in slices of work. Voxels beyond the border
-/// have the value of the border.
+/// have the value of the border. A deviation is at most the width of the image.
 pub(crate) async fn blur(size: [usize; 3], voxels: &mut [f32], deviations: [f64; 3]) {
     let mut meter = Meter::default();
-    let weights = deviations.map(gaussian);
+    let weights = core::array::from_fn::<_, 3, _>(|axis| gaussian(deviations[axis].min(size[axis] as f64)));
     if weights[0].len() > 1 {
         let reach = weights[0].len() - 1;
         let mut line = vec![0.0; size[0] + 2 * reach];

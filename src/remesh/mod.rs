@@ -132,7 +132,9 @@ pub enum MeshError {
         place: DVec3,
     },
     /// The caller asks both to keep edges or borders and to blur them.
-    #[error("a Gaussian is for scans, whose edges and borders are not kept: give its width or ask for those")]
+    #[error(
+        "a Gaussian rounds edges and moves borders: ask for it, or for edges and borders that are kept, not both"
+    )]
     Both,
     /// The angle of edges is out of its range.
     #[error("the angle of edges is {angle}°, and can be from 1° to 180°")]

@@ -494,7 +494,7 @@ fn headers_with_false_counts_are_refused_before_memory_is_allocated() {
 fn files_of_other_formats_and_sizes_are_refused_with_advice() {
     for (bytes, part) in [
         (&b"\x89PNG\r\n\x1a\n"[..], "this is a PNG picture"),
-        (b"PK\x03\x04rest", "this is a ZIP archive"),
+        (b"PK\x03\x04rest", "archive: the file is cut off or damaged"),
         (
             b"\x1f\x8b\x08",
             "this is a gzip archive, and what is read is PLY, OBJ, STL, OFF, GLB, PCD and text with a point a line (XYZ, PTS, CSV); unpack it",

@@ -18,6 +18,10 @@ impl Core {
     /// Replaces the `count` fields that were kept last by their combination. A smooth union has the
     /// width `by`, an offset that distance. A `difference` and a `smoothUnion` take two fields, an
     /// `offset` one.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such combination of so many fields.
     pub fn combine(
         &mut self,
         #[wasm_bindgen(
@@ -43,6 +47,10 @@ impl Core {
     /// Changes the field to the one that was kept last. Of the `FieldRequest` the box counts, and a
     /// formula with the field as an operand. Returns an `Answer` with `FieldAnswer`. After an error
     /// the last valid field stays.
+    ///
+    /// # Panics
+    ///
+    /// If no field was kept.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_kept(
         &mut self,

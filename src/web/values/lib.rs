@@ -4,7 +4,7 @@
 //! tables for decimal digits.
 #![cfg(target_arch = "wasm32")]
 
-use js_sys::Reflect;
+use js_sys::{Object, Reflect};
 use marching_particles::session::{Fault, FaultKind};
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
@@ -30,7 +30,7 @@ pub fn to_js(value: &impl Serialize) -> JsValue {
 }
 
 /// The answer to a command that can be refused: `{ok: true, …}` with the fields of the value, a
-/// structure, or `{ok: false, error: …}`.
+/// structure or nothing, or `{ok: false, error: …}`.
 ///
 /// # Panics
 ///
@@ -42,6 +42,7 @@ pub fn answer<T: Serialize, E: Serialize>(result: Result<T, E>) -> JsValue {
     }
     let is_accepted = result.is_ok();
     let answer = result.map_or_else(|error| to_js(&Refused { error }), |value| to_js(&value));
+    let answer = if answer.is_object() { answer } else { Object::new().into() };
     Reflect::set(&answer, &"ok".into(), &is_accepted.into()).expect("an object takes any property");
     answer
 }

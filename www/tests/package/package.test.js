@@ -164,7 +164,7 @@ describe('an image', () => {
     const closed = await made.sample(given, { iso: 0, smooth: 0, closeBorder: true, count: 500 });
     const highest = (/** @type {Float32Array | Float64Array} */ points) =>
       Math.max(...points.filter((_, k) => k % 3 === 2));
-    expect(highest(open.points)).toBeCloseTo(19, 3);
+    expect(highest(open.points)).toBeCloseTo(19, 2);
     expect(highest(closed.points)).toBeCloseTo(19.5, 1);
     await expect(made.sample('x^2 + y^2 + z^2 = 1', { closeBorder: true })).rejects.toThrow(/closeBorder/);
   });

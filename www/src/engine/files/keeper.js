@@ -14,7 +14,7 @@ import { FIRST_SLICES, openGiven } from './open.js';
  * @import { KeyedFile, MakeEnv, Opened, OpenEnv, Refused } from './types.js'
  */
 
-/** Duration of a step while a field is made: several times that of a run, which would be replaced and goes on meanwhile. */
+/** Duration of a step while a field is made, several times that of a run, which goes on meanwhile. */
 const MAKE_MS = 24;
 
 /** @param {Refused} refused @returns {FieldAnswer} */
@@ -81,7 +81,7 @@ export class FileKeeper {
   }
 
   /**
-   * Whether the field of a file can be set now. If not, the file is opened, or the field is made, and `whenReady` is called.
+   * Whether the field of a file can be set now. If not, the file is opened or the field made, and `whenReady` called.
    * @param {Core} core @param {KeyedFile} file @param {Partial<FieldRequest>} request
    * @param {{tell?: (fraction: number) => void, whenReady: (error?: unknown) => void}} told
    */

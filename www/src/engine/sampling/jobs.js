@@ -23,7 +23,10 @@ const PATIENCE_MS = 150;
 /**
  * Opens files in the core and makes fields of them. `isReady` does so for a job if necessary, and the worker then asks
  * again. `stop` ends that.
- * @typedef {{isReady: (core: Core, job: SampleJob) => boolean, setField: FileKeeper['setField'], stop: () => void}} Files
+ * @typedef {object} Files
+ * @property {(core: Core, job: SampleJob) => boolean} isReady
+ * @property {FileKeeper['setField']} setField
+ * @property {() => void} stop
  */
 /** Used if no job has a file. @type {Files} */
 const NO_FILES = {

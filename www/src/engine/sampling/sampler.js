@@ -235,7 +235,10 @@ export class Sampler {
     }
   }
 
-  /** Shows how far the field of a job is, instead of the run that it replaces. @param {number} id @param {number} fraction */
+  /**
+   * Shows how far the field of a job is, instead of the run that it replaces.
+   * @param {number} id @param {number} fraction
+   */
   #making(id, fraction) {
     const asked = askedFor(this.ledger, id);
     if (!asked || KINDS[asked.request.kind].isLive) return;

@@ -55,8 +55,9 @@ export type Job = SampleJob | RelaxJob;
  * sent after each run, and for the particles that the worker holds. `export` asks for the mesh as a file, once no job
  * is left. `number` asks for the number that a text without names stands for, `code` for the program that makes the
  * particles, `fault` for what is wrong with a formula of the settings. `measure` measures particles that the sampler
- * has not placed: a worker that is asked has no jobs. `section` asks for the voxels in a plane. `open` opens the file of an image or a mesh, which `open_stop`
- * gives up. The first message is `core`, or `no_core` if the core could not be loaded.
+ * has not placed: a worker that is asked has no jobs. `section` asks for the voxels in a plane. `open` opens the file
+ * of an image or a mesh, which `open_stop` gives up. The first message is `core`, or `no_core` if the core could not be
+ * loaded.
  */
 export type ToWorker =
   | { type: 'core'; module: WebAssembly.Module }

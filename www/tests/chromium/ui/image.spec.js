@@ -122,11 +122,11 @@ test('what the border cuts is open or closed', async ({ page }) => {
   await choose(page, 'rod.nii', ROD);
   await settled(page);
   expect((await report(page)).cut).not.toBe(undefined);
-  expect((await report(page)).euler).toBe(0);
+  expect((await report(page)).quality.euler).toBe(0);
   await page.getByRole('radio', { name: 'Closed' }).check();
   await settled(page);
   expect((await state(page)).parameters).toMatchObject({ closed: 1 });
-  expect((await report(page)).euler).toBe(2);
+  expect((await report(page)).quality.euler).toBe(2);
   await clean();
 });
 
