@@ -94,7 +94,7 @@
 //! | For | Items |
 //! |---|---|
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
-//! | its settings | [`Settings`], [`Spacing`], [`SpacedSettings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
+//! | its settings | [`Settings`], [`Spacing`], [`SpacedSettings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Pattern`], [`Counting`], [`Bounds`], [`Reach`] |
 //! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`Thickness`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [`PorosityError`], [gallery] |
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`BatchPiecewise`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [`Within`], [glam] |
 //! | solids of several fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`IntoFields`], [`Combined`] |
@@ -212,9 +212,9 @@ pub use run::{
     Sample, Severity, Start, Value, ValueError, Warning, sample,
 };
 pub use sampler::{
-    Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Radius, Refusal, Sampled,
-    Sampling, Search, Settings, SettingsError, SizeMode, SpacedSettings, Spacing, Spot, StopReason,
-    Unsampled,
+    Counting, Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Pattern, Phase, Progress, Radius,
+    Refusal, Sampled, Sampling, Search, Settings, SettingsError, SizeMode, SpacedSettings, Spacing, Spot,
+    StopReason, Unsampled,
 };
 pub use topology::{Component, Topology};
 

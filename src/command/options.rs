@@ -24,6 +24,12 @@ const LAW: &str = "radius_law";
 /// The option for a number of particles. It also chooses the size mode.
 const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
+/// The option for exactly that number, and the setting whose value it chooses.
+const EXACTLY: &str = "exactly";
+const COUNTING: &str = "counting";
+/// The method and the pattern of a front, which others need.
+const METHOD: &str = "method";
+const PATTERN: &str = "pattern";
 /// The option for a radius.
 const RADIUS: &str = "radius_share";
 /// The largest slope of the sizes, with or without a curvature.
@@ -195,6 +201,8 @@ impl SamplingOptions {
                 let needed = match (condition.name, condition.equal) {
                     (SAMPLING, _) if setting.name == GRADING => "--adaptive or a --spacing by a formula",
                     (SAMPLING, _) => "--adaptive",
+                    (PATTERN, _) => "--pattern hexagonal",
+                    (METHOD, _) => "--method front",
                     (LAW, true) => "--law chord-error",
                     (LAW, false) => "--law max-curvature or --law sum-of-curvatures",
                     (name, _) => name,
@@ -249,6 +257,7 @@ impl FromArgMatches for SamplingOptions {
             self.given.push(setting);
             let value: Json = match setting.kind {
                 SettingKind::Choice if name == SAMPLING => ADAPTIVE.into(),
+                SettingKind::Choice if name == COUNTING => EXACTLY.into(),
                 SettingKind::Text => {
                     matches.get_one::<String>(name).ok_or_else(|| missing(name))?.as_str().into()
                 }
@@ -292,6 +301,9 @@ fn option(setting: &Setting) -> Arg {
     if setting.needs(SIZE_MODE, "radius") {
         arg = arg.conflicts_with(COUNT);
     }
+    if setting.name == COUNTING {
+        return arg.action(ArgAction::SetTrue).requires(COUNT);
+    }
     if setting.name == SAMPLING {
         return arg.action(ArgAction::SetTrue);
     }
@@ -318,7 +330,7 @@ fn option(setting: &Setting) -> Arg {
 fn help(setting: &Setting) -> String {
     let help = setting.help.trim_end_matches('.');
     let default = match setting.default {
-        _ if setting.name == SAMPLING || setting.name == COUNT => return help.to_owned(),
+        _ if [SAMPLING, COUNT, COUNTING].contains(&setting.name) => return help.to_owned(),
         SettingValue::Choice(value) => value.replace('_', "-"),
         SettingValue::Integer(whole) if setting.name == MAX_PARTICLES => {
             format!("{}, or a tenth more than --count", grouped(whole as usize))

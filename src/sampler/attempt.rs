@@ -6,7 +6,7 @@ use crate::sampler::discovery::survey::Survey;
 use crate::sampler::front::FrontPlan;
 use crate::sampler::projection::{Tolerance, tolerance};
 use crate::sampler::refine;
-use crate::sampler::settings::{Settings, SizeMode};
+use crate::sampler::settings::{Pattern, Settings, SizeMode};
 use crate::sampler::sizing::Sizing;
 
 /// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by
@@ -27,6 +27,19 @@ const PILOT_SHARE: f64 = 1.0 / 20.0;
 /// Fewest particles of a pilot run. Smaller: the count is farther off; larger: there are more
 /// evaluations.
 const LEAST_PILOT: f64 = 1_500.0;
+
+/// Particles of blue noise per hexagonal cell 2√3 r²: discs of radius r that fall at random until
+/// no more fit cover 0.547 of the plane (E. L. Hinrichsen, J. Feder, T. Jøssang, "Geometry of
+/// random sequential adsorption", 1986), those of a lattice π/(2√3).
+const BLUE_PACKING: f64 = 0.547 / 0.9069;
+
+/// Radius of the front under blue noise, over that of the noise. With it both have about the same
+/// number of particles. Smaller: the front takes longer; larger: the squares bend more.
+const BLUE_FRONT: f64 = 1.3;
+
+/// A front under a pattern has at least about so many particles, so that it covers also a surface
+/// with few.
+const LEAST_COVER: f64 = 1_500.0;
 
 /// Columns are reserved for the expected count times this: for the tolerance of a wanted count, and
 /// some more.
@@ -60,6 +73,8 @@ pub(super) struct Attempt {
     area: f64,
     /// Particles per hexagonal cell 2√3 r²: a guess, then what the attempts have shown.
     packing: f64,
+    /// Radius of the front under a pattern, over that of the particles; 1 without a pattern.
+    cover: f64,
 }
 
 /// The radii of a front: that of all particles, and the radius field.
@@ -68,12 +83,16 @@ pub(super) type Radii = (f64, Option<Sizing>);
 impl Attempt {
     /// The first attempt on a surface of the estimated `area` in a box of the given `diagonal`.
     pub(super) fn first(settings: &Settings, area: f64, diagonal: f64, sizing: Option<Sizing>) -> Self {
-        let packing = if sizing.is_some() { ADAPTIVE_PACKING } else { PACKING };
-        let mut attempt = Self { sizing, area, packing, ..Self::default() };
+        let packing = match settings.pattern_in_use() {
+            Pattern::Blue => BLUE_PACKING,
+            _ if sizing.is_some() => ADAPTIVE_PACKING,
+            _ => PACKING,
+        };
+        let mut attempt = Self { sizing, area, packing, cover: 1.0, ..Self::default() };
         attempt.radius = settings.radius_share * diagonal;
         if settings.size_mode == SizeMode::Count {
             let wanted = f64::from(settings.count);
-            let is_pilot = wanted > PILOT_FROM;
+            let is_pilot = wanted > PILOT_FROM && settings.pattern_in_use() == Pattern::Hexagonal;
             let first = if is_pilot { (wanted * PILOT_SHARE).max(LEAST_PILOT) } else { wanted };
             let radius = (attempt.count_times_radius_sq() / first).sqrt();
             if radius > 0.0 {
@@ -87,6 +106,13 @@ impl Attempt {
             sizing.scale_to(uniform / packing);
         }
         attempt.set_radius_by_sizing();
+        let most = match settings.pattern_in_use() {
+            Pattern::Hexagonal => return attempt,
+            Pattern::Blue => BLUE_FRONT,
+            Pattern::Random => 1.0,
+        };
+        let expected = attempt.area * PACKING / (HEXAGONAL_CELL * attempt.radius * attempt.radius);
+        attempt.cover = most.min((expected / LEAST_COVER).sqrt());
         attempt
     }
 
@@ -140,7 +166,7 @@ impl Attempt {
 
     /// The front of this attempt, for particles in a box.
     pub(super) fn front(&self, settings: &Settings, bounds: &Bounds) -> FrontPlan {
-        FrontPlan {
+        let plan = FrontPlan {
             bounds: *bounds,
             radius: self.radius as f32,
             sizing: self.sizing.clone(),
@@ -149,6 +175,19 @@ impl Attempt {
             max_particles: settings.max_particles as usize,
             expected: self.expected(self.radius),
             halvings: None,
+        };
+        if settings.pattern_in_use() == Pattern::Hexagonal {
+            return plan;
+        }
+        let radius = self.radius * self.cover;
+        let grading = settings.grading * self.cover;
+        FrontPlan {
+            radius: radius as f32,
+            sizing: plan.sizing.map(|sizing| sizing.graded(grading, self.cover)),
+            grading: grading as f32,
+            max_particles: plan.max_particles.max(2 * LEAST_COVER as usize),
+            expected: self.area * PACKING / (HEXAGONAL_CELL * radius * radius),
+            ..plan
         }
     }
 
@@ -177,6 +216,19 @@ impl Attempt {
     /// The first attempt at a front that replaces this one after a refusal.
     pub(super) fn without_refinement(&mut self, settings: &Settings, diagonal: f64) -> Self {
         Self::first(settings, self.area, diagonal, self.sizing.take().map(|sizing| sizing.unscaled(settings)))
+    }
+
+    /// Particles per hexagonal cell 2√3 r².
+    pub(super) fn packing(&self) -> f64 {
+        self.packing
+    }
+
+    /// Multiplies all radii by a factor.
+    pub(super) fn resize(&mut self, factor: f64) {
+        self.radius *= factor;
+        if let Some(sizing) = &mut self.sizing {
+            sizing.scale(factor);
+        }
     }
 
     /// Takes the radius from the radius field, if there is one.

@@ -32,6 +32,8 @@ pub(super) struct Cover {
     /// The plan of the front.
     pub(super) plan: FrontPlan,
     pub(super) front: Front,
+    /// Share of the particles of a pattern that are drawn, while one is drawn.
+    pub(super) drawn: Option<f64>,
     pub(super) neighbours: PackedNeighbours,
     pub(super) relaxation: Relaxation,
     pub(super) flow: Flow,
@@ -52,7 +54,7 @@ impl Cover {
     /// Rows of the columns that will stay.
     pub(super) fn settled(&self) -> usize {
         match self.phase {
-            Phase::Generation => self.front.level().settled,
+            Phase::Generation if self.drawn.is_none() => self.front.level().settled,
             _ => self.particles.len(),
         }
     }

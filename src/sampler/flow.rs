@@ -114,6 +114,9 @@ pub enum FollowError {
         "no particles cover the surface, of a run with these settings that has come to its end: start one"
     )]
     NotCovered,
+    /// Blue noise or random points, whose pattern would be lost.
+    #[error("a pattern of random points cannot follow a moving surface: start a run on the new one")]
+    Pattern,
     /// The old or the new surface has creases or seams, or the new one may have some in the box.
     #[error(
         "the surface has creases, seams or tips in the box, on which particles cannot follow: start a run on the new one"

@@ -10,9 +10,10 @@ use super::discovery::survey::Absence;
 use super::pace::{SLICE, Stopped, Task};
 use super::phase::{Phase, StopReason};
 use super::refine::{CoarseFronts, Next, Refusal};
-use super::settings::Sampling;
+use super::settings::{Pattern, Sampling};
 use super::stages::coarse::Refining;
 use super::stages::covering::cover_surface;
+use super::stages::drawing::{correct_count, draw_pattern};
 use super::stages::following::follow_surface;
 use super::stages::refining::{Halt, refine};
 use super::stages::relaxing::relax;
@@ -53,8 +54,10 @@ async fn place(
     Ok(reason)
 }
 
-/// Fronts whose radius meets the wanted number of particles, and the relaxation of the last one.
+/// Fronts whose radius meets the wanted number of particles, and the relaxation of the last one; or
+/// one front, and a pattern that is drawn over it.
 async fn front(task: &mut Task<'_>, cover: &mut Cover) -> Result<StopReason, Stopped> {
+    let is_drawn = task.settings.pattern_in_use() != Pattern::Hexagonal;
     let mut search = Search::new(MOST_FRONTS);
     loop {
         let plan = cover.attempt.front(&task.settings, &task.surface.bounds);
@@ -63,15 +66,23 @@ async fn front(task: &mut Task<'_>, cover: &mut Cover) -> Result<StopReason, Sto
             return Ok(reason);
         }
         let (count, is_capped) = (cover.particles.count(), cover.front.level().capped);
-        if !cover.attempt.is_corrected(&mut search, &task.settings, count, is_capped) {
+        // A pattern meets the wanted number by itself.
+        let stands = is_drawn && !is_capped;
+        if stands || !cover.attempt.is_corrected(&mut search, &task.settings, count, is_capped) {
             break;
         }
+    }
+    if is_drawn {
+        task.turn(cover).await?;
+        draw_pattern(task, cover).await?;
+        return Ok(cover.reason_for_end());
     }
     let is_alone = cover.front.level().fates.added == 0 && cover.particles.twins.is_empty();
     if is_alone && !cover.front.level().capped {
         return Ok(StopReason::OneParticle);
     }
-    if task.settings.relax_steps > 0 || task.settings.sampling == Sampling::Adaptive {
+    let is_corrected = correct_count(task, cover).await?;
+    if is_corrected || task.settings.relax_steps > 0 || task.settings.sampling == Sampling::Adaptive {
         cover.begin_relaxation(task.surface, &task.settings);
         task.turn(cover).await?;
         relax(task, cover).await?;

@@ -18,6 +18,7 @@ mod message;
 mod methods;
 mod neighbours;
 mod pace;
+mod pattern;
 mod phase;
 pub(crate) mod probe;
 mod progress;
@@ -38,7 +39,8 @@ pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Forecast, Progress};
 pub use refine::{Refusal, Spot};
 pub use settings::{
-    COUNT_ROOM, GapPolicy, LawKind, Method, Radius, Sampling, Settings, SettingsError, SizeMode,
+    COUNT_ROOM, Counting, GapPolicy, LawKind, Method, Pattern, Radius, Sampling, Settings, SettingsError,
+    SizeMode,
 };
 pub use spacing::{SpacedSettings, Spacing};
 
@@ -72,6 +74,10 @@ use surface::Surface;
 /// levels of its mesh, with the wanted sizes if they vary. tests/memory.rs checks this against what
 /// runs take. Not more, since WebAssembly never gives memory back.
 pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
+    // A pattern has a front of about as many particles under it, and cells of their squares.
+    if settings.pattern_in_use() != Pattern::Hexagonal {
+        return 230;
+    }
     match (settings.method, settings.sampling) {
         (Method::Front, _) => 95,
         (Method::Refined, Sampling::Uniform) => 130,
@@ -346,10 +352,13 @@ impl<'f> Sampler<'f> {
     }
 
     /// Requests `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`]
-    /// does them. Returns whether there are particles to relax; if not, nothing has changed.
+    /// does them. Returns whether there are particles to relax; if not, nothing has changed. Blue
+    /// noise and random points are not relaxed: they would lose their pattern.
     #[must_use]
     pub fn relax(&mut self, field: &Arc<dyn Field + 'f>, steps: u32) -> bool {
-        let can_relax = self.stop_reason.is_some() && self.cover.particles.len() > 1;
+        let can_relax = self.stop_reason.is_some()
+            && self.cover.particles.len() > 1
+            && self.settings.pattern_in_use() == Pattern::Hexagonal;
         if can_relax {
             self.settings.relax_steps = self.cover.relaxation.steps_done() + steps;
             self.cover.begin_relaxation(&self.surface, &self.settings);

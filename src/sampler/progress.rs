@@ -5,11 +5,15 @@ use crate::particles::Particles;
 use crate::sampler::fates::FateCounts;
 use crate::sampler::phase::Phase;
 use crate::sampler::refine::{self, Refusal};
+use crate::sampler::settings::Pattern;
 use serde::Serialize;
 
 /// Cost of a relaxation step per particle, as a share of what it costs to place the particle, for
 /// the display of progress. Natively it is 0.07 to 0.2.
 const RELAXATION_STEP_COST: f64 = 0.125;
+
+/// Share of the front in the cost of a pattern over it, for the display of progress.
+const FRONT_OF_PATTERN: f64 = 0.25;
 
 /// Result of [`Sampler::begin`]: the radius, and estimates for the run.
 #[derive(Clone, Copy, Debug)]
@@ -145,7 +149,7 @@ impl Sampler<'_> {
             refine_level,
             refine_levels,
             relax_step: self.cover.relaxation.steps_done(),
-            relax_steps: self.settings.relax_steps,
+            relax_steps: self.relax_steps(),
             evaluations: self.cover.evaluations,
             fraction: self.fraction(settled).max(self.cover.fraction),
             stop_reason: self.stop_reason,
@@ -155,10 +159,23 @@ impl Sampler<'_> {
         }
     }
 
+    /// Relaxation steps of the run: none for random patterns.
+    fn relax_steps(&self) -> u32 {
+        match self.settings.pattern_in_use() {
+            Pattern::Hexagonal => self.settings.relax_steps,
+            _ => 0,
+        }
+    }
+
     /// Estimated share of the run that is done, with so many `particles` placed for good.
     fn fraction(&self, particles: usize) -> f64 {
-        let relax_steps = f64::from(self.settings.relax_steps);
-        let generation = 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps);
+        let relax_steps = f64::from(self.relax_steps());
+        let is_pattern = self.settings.pattern_in_use() != Pattern::Hexagonal;
+        let generation =
+            if is_pattern { FRONT_OF_PATTERN } else { 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps) };
+        if let Some(drawn) = self.cover.drawn.filter(|_| is_pattern) {
+            return generation + (1.0 - generation) * drawn.min(0.99);
+        }
         match self.cover.phase {
             Phase::Idle => 0.0,
             Phase::Refinement => self.cover.refined.fraction(),

@@ -67,6 +67,33 @@ pub enum GapPolicy {
     Leave,
 }
 
+/// Pattern of the particles of a front, see [`Settings::pattern`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Pattern {
+    /// Hexagons, as the front and its relaxation make them.
+    #[default]
+    Hexagonal,
+    /// Blue noise, the maximal Poisson-disk sampling: random points none of which is nearer to
+    /// another than the sum of their radii, and so many that no more fit.
+    Blue,
+    /// Independent random points, even by area; where sizes vary, their density goes with 1/r².
+    Random,
+}
+
+/// How closely a wanted count is met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Counting {
+    /// To within 3 %.
+    Nearly,
+    /// Exactly: of a front some per cent of the particles at most are removed where they are
+    /// crowded, or added in the widest gaps, before the relaxation.
+    Exactly,
+}
+
 /// The repulsion radius of a run. As text, a length is a number and a share an object:
 /// `{"share": 0.01}`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,8 +192,11 @@ pub struct Settings {
     /// Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows
     /// 2 % and 0.6 % (§6).
     pub radius_share: f64,
-    /// Target count, met to within 3 %. Adaptive sampling scales all radii by one factor.
+    /// Target count, met as `counting` says. Adaptive sampling scales all radii by one factor.
     pub count: u32,
+    /// How closely the count of a front is met. Blue noise and random points have it exactly, the
+    /// refined method nearly.
+    pub counting: Counting,
     /// Law for the radius of an adaptive particle, given the principal curvatures.
     pub radius_law: LawKind,
     /// Wanted distance between the surface and a triangle of neighbours, as a share of the box
@@ -185,6 +215,9 @@ pub struct Settings {
     pub relax_steps: u32,
     /// Method by which the particles are placed and evened out.
     pub method: Method,
+    /// Pattern of the particles, for the method of a front. Blue noise and random points are drawn
+    /// over a front and are not relaxed.
+    pub pattern: Pattern,
     /// A child joins an existing particle within this distance, in units of 2r. The paper names no
     /// tolerance. With 0.7 most particles have six neighbours on smooth surfaces.
     pub match_tolerance: f64,
@@ -314,6 +347,7 @@ impl Settings {
         size_mode: SizeMode::Radius,
         radius_share: 0.006,
         count: 20_000,
+        counting: Counting::Nearly,
         radius_law: LawKind::ChordError,
         chord_error: 4.5e-5,
         curvature_scale: 0.015,
@@ -322,6 +356,7 @@ impl Settings {
         grading: 0.2,
         relax_steps: 10,
         method: Method::Front,
+        pattern: Pattern::Hexagonal,
         match_tolerance: 0.7,
         gaps: GapPolicy::Fill,
         seed: 0,
@@ -380,6 +415,36 @@ impl Settings {
     #[must_use]
     pub fn refined(self) -> Self {
         Self { method: Method::Refined, ..self }
+    }
+
+    /// Chooses the pattern of the particles and returns the settings.
+    ///
+    /// ```
+    /// use marching_particles::{Pattern, Settings, sample};
+    ///
+    /// let sphere = |p: marching_particles::glam::DVec3| p.length() - 1.0;
+    /// let blue = sample(sphere, &Settings::with_count(1_000).with_pattern(Pattern::Blue))?;
+    /// assert_eq!(blue.positions().len(), 1_000);
+    /// # Ok::<(), marching_particles::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_pattern(self, pattern: Pattern) -> Self {
+        Self { pattern, ..self }
+    }
+
+    /// Has a wanted count met exactly, not only to within 3 %, and returns the settings. The
+    /// refined method does not do so.
+    #[must_use]
+    pub fn exactly(self) -> Self {
+        Self { counting: Counting::Exactly, ..self }
+    }
+
+    /// The pattern of the particles: that of the refined method is hexagonal.
+    pub(crate) fn pattern_in_use(&self) -> Pattern {
+        match self.method {
+            Method::Front => self.pattern,
+            Method::Refined => Pattern::Hexagonal,
+        }
     }
 
     /// Sets the seed of the random choice of the point where the front begins, and returns the

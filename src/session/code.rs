@@ -144,10 +144,9 @@ impl Program<'_> {
         };
         let (values, usual) = (with_values(&self.settings), with_values(&usual));
         let is_effective = |setting: &Setting| {
-            // Relaxation steps matter where the front cannot be refined.
             let is_grading = setting.name == "grading" && self.are_graded();
             is_grading
-                || setting.when.iter().filter(|condition| condition.name != "method").all(|condition| {
+                || setting.when.iter().filter(|condition| setting.depends_on(condition)).all(|condition| {
                     let holds = values.iter().any(|other| {
                         other.name == condition.name && other.default == SettingValue::Choice(condition.value)
                     });
@@ -228,7 +227,12 @@ impl Program<'_> {
                 SettingValue::Number(number) => format!("{number:?}"),
                 SettingValue::Integer(whole) => grouped(whole as usize).replace(',', "_"),
                 SettingValue::Choice(word) => {
-                    let kind = if setting.name == "gaps" { "GapPolicy" } else { "LawKind" };
+                    let kind = match setting.name {
+                        "gaps" => "GapPolicy",
+                        "pattern" => "Pattern",
+                        "counting" => "Counting",
+                        _ => "LawKind",
+                    };
                     imports.push(kind);
                     format!("{kind}::{}", variant(word))
                 }
@@ -338,6 +342,7 @@ impl Program<'_> {
                 SettingValue::Number(share) if setting.is_share() => quoted(&percent_text(share), quote),
                 SettingValue::Number(number) => shortest_text(number),
                 SettingValue::Integer(whole) => whole.to_string(),
+                SettingValue::Choice("exactly") => yes.to_owned(),
                 SettingValue::Choice(word) => quoted(word, quote),
             };
             given.push((setting.argument(), value));

@@ -2,7 +2,7 @@
 //! line an option, and `docs/settings.md` a row. Defaults and ranges agree with [`Settings`].
 
 use super::fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
-use crate::sampler::{GapPolicy, LawKind, Method, Sampling, Settings, SizeMode};
+use crate::sampler::{Counting, GapPolicy, LawKind, Method, Pattern, Sampling, Settings, SizeMode};
 use core::ops::RangeInclusive;
 use serde::Serialize;
 
@@ -55,6 +55,13 @@ impl Setting {
         self.unit == "%"
     }
 
+    /// Whether the setting has no effect unless a condition of it holds. Relaxation steps are shown
+    /// for the method of a front alone, and also matter where a front cannot be refined.
+    #[must_use]
+    pub fn depends_on(&self, condition: &Condition) -> bool {
+        (self.name, condition.name) != ("relax_steps", "method")
+    }
+
     /// Whether the setting has an effect only while another setting has this value.
     #[must_use]
     pub fn needs(&self, name: &str, value: &str) -> bool {
@@ -84,6 +91,7 @@ impl Setting {
             "radius_min_share" => "radius_min",
             "radius_max_share" => "radius_max",
             "relax_steps" => "relax",
+            "counting" => "exactly",
             name => name,
         }
     }
@@ -102,17 +110,21 @@ pub fn without_effect(
         ("sampling", SettingValue::from(values.sampling)),
         ("size_mode", values.size_mode.into()),
         ("radius_law", values.radius_law.into()),
+        ("pattern", values.pattern.into()),
+        ("method", values.method.into()),
         ("box_faces", solid.box_faces.into()),
     ];
     let fails = |condition: &&Condition| {
         let chosen = choices.iter().find(|(name, _)| *name == condition.name);
-        // Relaxation steps matter where a front cannot be refined: the method is no condition.
         chosen.is_some_and(|&(_, value)| (value == SettingValue::Choice(condition.value)) != condition.equal)
     };
     let mut all = settings()
         .into_iter()
         .filter(|setting| given.contains(&setting.name) && !(is_spaced && setting.name == "grading"));
-    all.find_map(|setting| setting.when.iter().find(fails).map(|&condition| (setting, condition)))
+    all.find_map(|setting| {
+        let mut counting = setting.when.iter().filter(|condition| setting.depends_on(condition));
+        counting.find(fails).map(|&condition| (setting, condition))
+    })
 }
 
 /// Group of settings that are shown together.
@@ -268,6 +280,7 @@ const ADAPTIVE: Condition = when("sampling", "adaptive");
 const BY_RADIUS: Condition = when("size_mode", "radius");
 const BY_COUNT: Condition = when("size_mode", "count");
 const BY_FRONT: Condition = when("method", "front");
+const IN_HEXAGONS: Condition = when("pattern", "hexagonal");
 const BY_CHORD: Condition = when("radius_law", "chord_error");
 const BY_CURVATURE: Condition = Condition { equal: false, ..BY_CHORD };
 const UNSPACED: Condition = when("spacing", "");
@@ -294,6 +307,8 @@ choices!(SIZES of SizeMode: Radius "radius" "Radius", Count "count" "Count");
 choices!(LAWS of LawKind: ChordError "chord_error" "Chord error", MaxCurvature "max_curvature" "Largest curvature",
     SumOfCurvatures "sum_of_curvatures" "Sum of curvatures");
 choices!(METHODS of Method: Front "front" "Front", Refined "refined" "Refined");
+choices!(PATTERNS of Pattern: Hexagonal "hexagonal" "Hexagonal", Blue "blue" "Blue noise", Random "random" "Random");
+choices!(COUNTINGS of Counting: Nearly "nearly" "Nearly", Exactly "exactly" "Exactly");
 choices!(GAPS of GapPolicy: Fill "fill" "Fill", Leave "leave" "Leave");
 
 /// Every setting, in display order.
@@ -406,6 +421,16 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             ))
         },
         Setting {
+            when: &[BY_COUNT, BY_FRONT],
+            ..advanced(choice(
+                "counting",
+                run.counting,
+                "Count met",
+                "Exactly: a front gives up its most crowded particles, or gets more in its largest holes, before the relaxation. Blue noise and random points always have the wanted count.",
+                COUNTINGS,
+            ))
+        },
+        Setting {
             when: &[ADAPTIVE],
             ..choice(
                 "radius_law",
@@ -467,8 +492,8 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             max: 100.0,
             step: 1.0,
             unit: "steps",
-            // Refined particles are in order already.
-            when: &[BY_FRONT],
+            // Refined particles are in order already, and other patterns would not stay.
+            when: &[BY_FRONT, IN_HEXAGONS],
             ..number(
                 "relax_steps",
                 run.relax_steps,
@@ -483,6 +508,16 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even.",
             METHODS,
         )),
+        Setting {
+            when: &[BY_FRONT],
+            ..advanced(choice(
+                "pattern",
+                run.pattern,
+                "Pattern",
+                "Hexagonal, as the front grows. Blue noise: a Poisson-disk pattern without rows, no pair nearer than 2r and no hole wider. Random: independent points, even by area. These two are not relaxed.",
+                PATTERNS,
+            ))
+        },
         Setting {
             unit: "× 2r",
             ..advanced(number(

@@ -294,7 +294,7 @@ fn every_setting_is_declared_with_its_kind_in_python_and_for_npm() {
     let python = read("python/package/marching_particles/__init__.pyi");
     for setting in &settings() {
         let argument = setting.argument();
-        let is_flag = ["adaptive", "closed", "periodic"].contains(&argument);
+        let is_flag = ["adaptive", "exactly", "closed", "periodic"].contains(&argument);
         let choices = || setting.choices.iter().map(|choice| choice.value);
         let kinds = |flag: &str, whole: &str, number: &str, size: &str, formula: &str, quote: char| {
             match setting.kind {

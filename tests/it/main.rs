@@ -49,6 +49,7 @@ mod near_sheets;
 mod paper;
 mod parity;
 mod pasted;
+mod patterns;
 mod periodic;
 mod plain;
 mod pointcloud;

@@ -93,6 +93,13 @@ export interface Options {
   thickness?: number | string;
   /** `refined` takes longer and spaces particles more evenly */
   method?: 'front' | 'refined';
+  /**
+   * `blue`: blue noise, no pair nearer than two radii and no hole wider; `random`: independent points, even by area.
+   * They are not relaxed, and have exactly the wanted `count`
+   */
+  pattern?: 'hexagonal' | 'blue' | 'random';
+  /** whether a front gets exactly the wanted `count`, and not only to within 3 % */
+  exactly?: boolean;
   /** relaxation steps after the front; default 10 */
   relax?: number;
   /** a child joins an existing particle within this distance, divided by two radii, 0.5 to 0.9 */

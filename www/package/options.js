@@ -93,6 +93,7 @@ function shareOf(name, text) {
  */
 export const SETTINGS = {
   count: { setting: 'count', kind: 'count' },
+  exactly: { setting: 'counting', kind: 'flag', values: ['exactly'] },
   spacing: { setting: 'radius_share', kind: 'spacing' },
   radius: { setting: 'radius_share', kind: 'size' },
   adaptive: { setting: 'sampling', kind: 'flag', values: ['adaptive'] },
@@ -106,6 +107,7 @@ export const SETTINGS = {
   periodic: { setting: 'box_cell', kind: 'flag', values: ['periodic'] },
   thickness: { setting: 'thickness', kind: 'text' },
   method: { setting: 'method', kind: 'choice', values: ['front', 'refined'] },
+  pattern: { setting: 'pattern', kind: 'choice', values: ['hexagonal', 'blue', 'random'] },
   relax: { setting: 'relax_steps', kind: 'whole' },
   matchTolerance: { setting: 'match_tolerance', kind: 'number' },
   gaps: { setting: 'gaps', kind: 'choice', values: ['fill', 'leave'] },

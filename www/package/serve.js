@@ -63,7 +63,8 @@ function checkEffects(core, { given, settings }) {
   const chosen = (/** @type {string} */ name) => settings[name] ?? table.find((row) => row.name === name)?.default;
   for (const { name, when } of table) {
     // Relaxation steps matter even for the refined method, if its front cannot be refined.
-    const conditions = name in given ? when.filter((condition) => condition.name !== 'method') : [];
+    const isSoft = (/** @type {string} */ other) => name === 'relax_steps' && other === 'method';
+    const conditions = name in given ? when.filter((condition) => !isSoft(condition.name)) : [];
     const failed = conditions.find((condition) => (chosen(condition.name) === condition.value) !== condition.equal);
     if (failed)
       throw new Refusal('InputError', `The option ${given[name]} has no effect ${NEEDED[failed.name](failed)}.`);
@@ -74,6 +75,8 @@ const NEEDED = {
   sampling: ({ value }) => `${value === 'adaptive' ? 'without' : 'with'} adaptive: true`,
   size_mode: () => 'beside count',
   box_faces: () => 'without closed: true',
+  method: () => "with method: 'refined'",
+  pattern: () => "without pattern: 'hexagonal'",
   radius_law: ({ equal }) => `without law: ${equal ? "'chord_error'" : "'max_curvature' or 'sum_of_curvatures'"}`,
 };
 

@@ -161,6 +161,8 @@ def sample(
     periodic: bool = False,
     thickness: Union[SupportsFloat, str, None] = None,
     method: Literal["front", "refined"] = "front",
+    pattern: Union[Literal["hexagonal", "blue", "random"], None] = None,
+    exactly: bool = False,
     relax: Union[SupportsIndex, None] = None,
     match_tolerance: Union[SupportsFloat, None] = None,
     gaps: Union[Literal["fill", "leave"], None] = None,

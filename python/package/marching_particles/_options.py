@@ -75,7 +75,12 @@ def settings_of(options):
 
 
 #: The settings that are True or False here, with their values if True.
-_FLAGS = {"sampling": "adaptive", "box_faces": "closed", "box_cell": "periodic"}
+_FLAGS = {
+    "sampling": "adaptive",
+    "counting": "exactly",
+    "box_faces": "closed",
+    "box_cell": "periodic",
+}
 
 
 def _number(name, value, setting):

@@ -264,6 +264,8 @@ def sample(
     periodic=False,
     thickness=None,
     method="front",
+    pattern=None,
+    exactly=False,
     relax=None,
     match_tolerance=None,
     gaps=None,
@@ -314,6 +316,11 @@ def sample(
         thickness: Thickness of a sheet around the surface that is sampled in its place: a number,
             or a formula of x, y, z and the parameters. For formulas.
         method: ``"front"``, or ``"refined"``: slower, with more particles that have six neighbours.
+        pattern: ``"hexagonal"``, as fronts grow; ``"blue"``: blue noise, a Poisson-disk pattern
+            without rows, no pair nearer than two radii and no hole wider; ``"random"``:
+            independent points, even by area. The last two are not relaxed, and have exactly the
+            wanted ``count``.
+        exactly: Whether a front has exactly ``count`` particles, and not only to within 3 %.
         relax: Steps of relaxation after the front; 10 without it.
         match_tolerance: Distance over two radii within which a child joins a particle that is
             there, 0.5 to 0.9.
@@ -361,6 +368,8 @@ def sample(
             "periodic": periodic,
             "thickness": thickness,
             "method": method,
+            "pattern": pattern,
+            "exactly": exactly,
             "relax": relax,
             "match_tolerance": match_tolerance,
             "gaps": gaps,

@@ -64,10 +64,13 @@ impl Creases {
     /// Fills corners and curves with particles. `radius` gives the wanted radius at a point of a
     /// patch, and each curve gets the number of particles that comes closest to it. Points are also
     /// stored for `halvings` halvings of the way between two particles.
+    ///
+    /// `rounded` makes a whole number of the room on a curve.
     pub(in super::super) fn fill(
         &self,
         probe: &mut Probe,
         halvings: u32,
+        rounded: fn(f64) -> f64,
         mut radius: impl FnMut(&mut Probe, Vec3) -> f32,
     ) -> CreaseParticles {
         let mut least = |probe: &mut Probe, place: DVec3, patches: &[u32]| {
@@ -107,7 +110,7 @@ impl Creases {
                 });
                 points.push(CurvePoint { position, radius, room });
             }
-            let numbers = self.fill_curve(probe, curve, &points, halvings, &mut filled);
+            let numbers = self.fill_curve(probe, curve, &points, (halvings, rounded), &mut filled);
             ways.push((numbers, start..filled.between.len()));
         }
         filled
@@ -158,14 +161,14 @@ impl Creases {
         probe: &mut Probe,
         curve: &Crease,
         points: &[CurvePoint],
-        halvings: u32,
+        (halvings, rounded): (u32, fn(f64) -> f64),
         filled: &mut CreaseParticles,
     ) -> Vec<u32> {
         let others = filled.list.len();
         let room = points[points.len() - 1].room;
         // With two particles a closed curve would run back along itself.
         let least = if curve.is_closed { 3.0 } else { 1.0 };
-        let parts = room.round().max(least) as usize;
+        let parts = rounded(room).max(least) as usize;
         let mut numbers: Vec<u32> = Vec::with_capacity(parts + 1);
         let mut after = 1;
         let fine = parts << halvings;

@@ -124,8 +124,12 @@ fn creases_that_end_at_one_point_of_the_box_share_a_particle() {
     let text = "max(hypot(x+1,y)-abs(z),0.5-max(abs(x+1),abs(y),abs(z-1)))";
     let (field, creases) = creases(text, 1.0);
     let mut memory = ProbeMemory::default();
-    let filled =
-        creases.fill(&mut Probe::new(&mut *field.evaluator(Frame::default()), &mut memory), 0, |_, _| 0.05);
+    let filled = creases.fill(
+        &mut Probe::new(&mut *field.evaluator(Frame::default()), &mut memory),
+        0,
+        f64::round,
+        |_, _| 0.05,
+    );
     let at = |place: Vec3| filled.list.iter().filter(move |p| p.position.distance(place) < 1e-4);
     for y in [-0.5, 0.5] {
         let [particle] = at(Vec3::new(-1.0, y, 0.5)).collect::<Vec<_>>()[..] else { panic!("two at {y}") };
@@ -172,7 +176,7 @@ fn particles_on_creases_are_evenly_spaced_and_have_a_row_for_each_patch() {
     let mut memory = ProbeMemory::default();
     let mut evaluator = field.evaluator(Frame::default());
     let probe = &mut Probe::new(&mut *evaluator, &mut memory);
-    let filled = creases.fill(probe, 0, |_, _| 0.0493);
+    let filled = creases.fill(probe, 0, f64::round, |_, _| 0.0493);
     // An edge of length 2 has room for 20 particles at a distance of 0.1.
     assert_eq!(filled.list.len(), 8 + 12 * 19);
     assert_eq!(filled.segments.len(), 12 * 20);
@@ -197,7 +201,7 @@ fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
     let mut memory = ProbeMemory::default();
     let mut evaluator = field.evaluator(Frame::default());
     let probe = &mut Probe::new(&mut *evaluator, &mut memory);
-    let filled = creases.fill(probe, 3, |_, _| 0.2);
+    let filled = creases.fill(probe, 3, f64::round, |_, _| 0.2);
     let mut rows = Particles::default();
     filled.add_rows(probe, &mut rows);
     let ladder = filled.into_ladder(&rows, None);

@@ -176,7 +176,7 @@ impl FrontLevel {
 
 /// Whether two points that face the same way, the first at `position`, lie on one sheet: the pair
 /// is not doubtful, or the field between them says so.
-pub(super) fn is_on_sheet(
+pub(crate) fn is_on_sheet(
     rule: SheetRule,
     probe: &mut Probe,
     position: Vec3,

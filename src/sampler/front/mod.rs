@@ -13,7 +13,7 @@ mod level;
 mod plan;
 mod uniform;
 
-pub(crate) use level::FrontContext;
+pub(crate) use level::{FrontContext, is_on_sheet};
 pub(crate) use plan::FrontPlan;
 pub(crate) use uniform::gaps::widest_gap;
 

@@ -203,8 +203,9 @@ impl Cover {
         // A coarse front grows beyond the box.
         let is_refined = plan.halvings.is_some();
         let beyond = is_refined.then(|| creases.beyond(&mut task.probe, bounds, &plan.bounds)).flatten();
-        let filled =
-            beyond.as_ref().unwrap_or(creases).fill(&mut task.probe, plan.halvings.unwrap_or(0), &mut radius);
+        let halvings = plan.halvings.unwrap_or(0);
+        let creases = beyond.as_ref().unwrap_or(creases);
+        let filled = creases.fill(&mut task.probe, halvings, f64::round, &mut radius);
         let particles = &mut self.particles;
         let along = filled.add_rows(&mut task.probe, particles);
         let match_share = 2.0 * task.settings.match_tolerance as f32;
@@ -223,7 +224,7 @@ impl Cover {
     /// Starts a front. Returns whether it has: not if the limit on particles is reached, nor where
     /// an adaptive surface has no radius.
     fn begin_front(&mut self, task: &mut Task, seed: OrientedPoint) -> bool {
-        if self.particles.len() >= task.settings.max_particles as usize {
+        if self.particles.len() >= self.plan.max_particles {
             self.front.cap();
             return false;
         }

@@ -3,6 +3,7 @@
 
 pub(super) mod coarse;
 pub(super) mod covering;
+pub(super) mod drawing;
 pub(super) mod following;
 pub(super) mod refining;
 pub(super) mod relaxing;
