@@ -8,8 +8,8 @@ use std::io::{Cursor, Read};
 /// Bytes that a slice of work unpacks.
 pub(super) const UNPACKED_AT_ONCE: u64 = 1 << 14;
 const GZIP: &[u8] = b"\x1f\x8b";
-/// The largest number of bytes to which one byte of deflate can expand: 258 by two bits (P. Deutsch,
-/// RFC 1951, 1996).
+/// The largest number of bytes to which one byte of deflate can expand: 258 by two bits (P.
+/// Deutsch, RFC 1951, 1996).
 const MOST_FROM_A_BYTE: u64 = 1032;
 
 /// A file, whose unpacked start is kept.

@@ -64,6 +64,10 @@ export class Core {
      * Replaces the `count` fields that were kept last by their combination. A smooth union has the
      * width `by`, an offset that distance. A `difference` and a `smoothUnion` take two fields, an
      * `offset` one.
+     *
+     * # Panics
+     *
+     * If there is no such combination of so many fields.
      */
     combine(how: 'union' | 'intersection' | 'difference' | 'smoothUnion' | 'offset', count: number, by: number): void;
     /**
@@ -288,6 +292,10 @@ export class Core {
      * Changes the field to the one that was kept last. Of the `FieldRequest` the box counts, and a
      * formula with the field as an operand. Returns an `Answer` with `FieldAnswer`. After an error
      * the last valid field stays.
+     *
+     * # Panics
+     *
+     * If no field was kept.
      */
     set_kept(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
