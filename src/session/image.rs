@@ -203,9 +203,10 @@ mod with_images {
 
     impl Session {
         /// Changes the field to the surface of an image. In the request, the parameters `iso`,
-        /// `label`, `smooth` and, if not 0, `dark` and `closed` are an [`ImageChoice`]. Its formula has the
-        /// surface as an operand, see [`Formula::with_model`]. The box is given by the request, or
-        /// is fitted. [`Session::set_field`] without a surface and a formula changes the choice.
+        /// `label`, `smooth` and, if not 0, `dark` and `closed` are an [`ImageChoice`]. Its formula
+        /// has the surface as an operand, see [`Formula::with_model`]. The box is given by the
+        /// request, or is fitted. [`Session::set_field`] without a surface and a formula changes
+        /// the choice.
         ///
         /// [`Formula::with_model`]: crate::field::formula::Formula::with_model
         ///

@@ -38,8 +38,8 @@ const KEPT_OF_SIZES: f32 = 0.25;
 const MOST_DARTS: usize = 1_000;
 
 impl Drawing {
-    /// Begins a pattern over a front of this plan. Of blue noise, so many particles are expected per
-    /// hexagonal cell as the `packing` says.
+    /// Begins a pattern over a front of this plan. Of blue noise, so many particles are expected
+    /// per hexagonal cell as the `packing` says.
     pub(in super::super) fn begun(
         front: Particles,
         plan: &FrontPlan,

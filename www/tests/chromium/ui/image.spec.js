@@ -119,6 +119,11 @@ const ROD = niftiOf((p) => Math.round(100 * (10 - Math.hypot(p[0] - 15.3, p[1] -
 
 test('what the border cuts is open or closed', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
+  // Coarser particles would not see the edges of the cap.
+  await page.evaluate(() => {
+    const page = /** @type {any} */ (window).marchingParticles;
+    return page.set({ settings: { ...page.state.settings, radius_share: 0.01 } });
+  });
   await choose(page, 'rod.nii', ROD);
   await settled(page);
   expect((await report(page)).cut).not.toBe(undefined);

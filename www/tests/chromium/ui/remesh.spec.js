@@ -10,9 +10,6 @@ const SQUARES = ['0 2 3 1', '4 5 7 6', '0 1 5 4', '2 6 7 3', '0 4 6 2', '1 3 7 5
 const offOf = (count = 6) =>
   Buffer.from(['OFF', `8 ${count} 0`, ...CORNERS, ...SQUARES.slice(0, count).map((f) => `4 ${f}`), ''].join('\n'));
 
-/** A tetrahedron whose corners lie in one plane. */
-const FLAT = Buffer.from('OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 0 3 1\n3 0 2 3\n3 1 3 2\n');
-
 /** A saddle of n × n squares. @param {number} n */
 function sheetOf(n) {
   const rows = ['OFF', `${(n + 1) ** 2} ${n * n} 0`];
@@ -83,7 +80,7 @@ test('a mesh is sampled anew with its edges, or as points, and says what has bec
   await clean();
 });
 
-test('a sheet ends at its border, a flat mesh is taken for points, and a link asks for the file', async ({ page }) => {
+test('a sheet ends at its border, and a link asks for the file', async ({ page }) => {
   const { clean } = await open(page, { width: 390, height: 844, hash: COARSE });
   await choose(page, 'open.off', offOf(5));
   await settled(page);
@@ -97,8 +94,6 @@ test('a sheet ends at its border, a flat mesh is taken for points, and a link as
   await expect(page.getByRole('heading', { name: 'sheet.off' })).toBeVisible();
   await settled(page);
   await expect(page.locator('.remesh')).toContainText('The surface ends at its border, 1 closed curve of 80 edges.');
-  await choose(page, 'flat.off', FLAT);
-  await expect(page.locator('.toast')).toContainText('flat.off was taken for points: the mesh is folded flat');
   await choose(page, 'open.off', offOf(5));
   await settled(page);
   const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
