@@ -83,13 +83,19 @@ function createEdges(engine) {
  * @param {Engine} engine @param {ReadonlySignal<MeshInfo | null>} info
  */
 function createBorders(engine, info) {
+  // What is chosen shows at once, while the field is still made.
+  const value = () => {
+    const chosen = engine.state.value.parameters.borders;
+    const isKept = chosen === undefined ? Boolean(info.value?.part?.rim) : chosen === 1;
+    return isKept ? 'kept' : 'closed';
+  };
   const choice = createSegmented({
     name: 'Borders',
     choices: [
       { value: 'kept', label: 'Kept' },
       { value: 'closed', label: 'Closed' },
     ],
-    value: () => (info.value?.part?.rim ? 'kept' : 'closed'),
+    value,
     change: (chosen) => choose(engine, { borders: chosen === 'kept' ? 1 : 0 }, ['borders', 'smooth']),
   });
   explain(choice, () => ({
