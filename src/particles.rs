@@ -45,8 +45,8 @@ pub struct Particles {
     pub level: Vec<u32>,
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
-    /// For each row, the patch of the surface on which it lies, by the number of its branch: see
-    /// [`Pieces::label`]. Empty if the surface has a single patch and no particles at tips.
+    /// The patch of each row, as the label of its piece: see [`Pieces::label`]. Empty if the surface
+    /// has a single patch and no particles at tips.
     ///
     /// [`Pieces::label`]: crate::field::Pieces::label
     pub patch: Vec<u32>,
@@ -61,20 +61,18 @@ pub struct Particles {
     /// For each of the segments, pairs of a patch on its left and one on its right, seen from
     /// outside: one pair, or two where the factors of a product cross.
     pub sides: Vec<Vec<[u32; 2]>>,
-    /// Opposite faces of a cell on which the particles are the same, see
-    /// [`UnitCell`](crate::field::UnitCell).
+    /// Pairs of opposite faces of a [`UnitCell`](crate::field::UnitCell) with the same particles.
     pub opposite: Vec<OppositeFaces>,
-    /// For each row, the first row of the particle on the lowest faces of a cell of which its own
-    /// is the image: of its own particle, but on an upper face. Empty unless opposite faces are the
-    /// same.
+    /// For each row, the first row of the particle that its own is a copy of: on an upper face of a
+    /// cell, the one across from it on the lowest faces; elsewhere its own particle. Empty unless
+    /// opposite faces are the same.
     pub periodic: Vec<u32>,
-    /// Number by which a particle that follows a moving surface is known as long as it lives, in
-    /// ascending order; those of the run before it moved are the first. Empty unless the surface
-    /// has moved.
+    /// A number for each particle that follows a moving surface, the same in every frame. Particles
+    /// born later have larger numbers, so the column ascends. Empty unless the surface has moved.
     pub identity: Vec<u32>,
 }
 
-/// A column of the particles, whatever it is of.
+/// A column of the particles, of any type.
 trait Rows {
     /// Keeps the first `len` values.
     fn truncate(&mut self, len: usize);
@@ -249,15 +247,15 @@ impl Particles {
         [position, normal, radius, parent, level, slots, patch, twins, periodic, identity]
     }
 
-    /// The first row of the particle of row `i`: `i` itself, but for the further rows of a particle
-    /// on a crease.
+    /// The first row of the particle of row `i`. It differs from `i` only where a particle on a
+    /// crease has several rows.
     #[must_use]
     pub fn first_row(&self, i: usize) -> usize {
         self.twins.get(i).map_or(i, |&first| first as usize)
     }
 
-    /// For each of the first rows, the first row of the same vertex: of the same particle, but for
-    /// the rows of a [tip](Self::tips), each of which is a vertex of its own.
+    /// For each of the first rows, the first row of the same vertex. A particle is one vertex, but
+    /// at a [tip](Self::tips) each of its rows is a vertex of its own.
     pub(crate) fn joints(&self) -> Vec<u32> {
         let mut joints = self.twins.clone();
         self.tips().into_iter().for_each(|tip| joints[tip as usize] = tip);
@@ -266,8 +264,8 @@ impl Particles {
 
     /// For each of the segments, whether the surface has an edge there: it ends there, or the
     /// normals of the patches on its left and on its right differ by more than a degree at one end.
-    /// An end where a third patch meets counts only if both are such: at the point where a fillet
-    /// begins its normal is any between those of its neighbours.
+    /// An end where a third patch meets counts only if the normals differ at both ends: where a
+    /// fillet begins at a point, its normal there is any between those of its neighbours.
     #[must_use]
     pub fn edges(&self) -> Vec<bool> {
         let mut rows: Vec<u32> = (0..self.twins.len() as u32).collect();
@@ -333,8 +331,8 @@ impl Particles {
         (0..twins.len() as u32).filter(|&i| is_tip[twins[i as usize] as usize]).collect()
     }
 
-    /// Gives all rows of a particle on a crease the least radius of them. Returns whether some had
-    /// another one.
+    /// Gives all rows of a particle on a crease the smallest of their radii. Returns whether any
+    /// radius changed.
     pub(crate) fn share_radii(&mut self) -> bool {
         let Self { radius, twins, .. } = self;
         let mut has_lowered = false;
@@ -470,8 +468,8 @@ impl Particles {
         place
     }
 
-    /// Names the first row that is kept of every particle on a crease, where each row has got a new
-    /// place.
+    /// Updates the first row of every particle on a crease after rows have moved: the first of its
+    /// rows that is kept.
     fn name_twins(&mut self, place: &[u32]) {
         let mut first = vec![Self::NO_PARENT; self.twins.len()];
         for (twin, &place) in self.twins.iter_mut().zip(place) {
@@ -479,7 +477,7 @@ impl Particles {
             *first = place.min(*first);
             *twin = *first;
         }
-        // A segment of which a row is removed is none of the first rows any more.
+        // The end of a segment whose particle is removed becomes NO_PARENT: `keep_segments` drops it.
         self.segments.iter_mut().flatten().for_each(|row| *row = first[*row as usize]);
     }
 

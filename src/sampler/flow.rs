@@ -139,7 +139,7 @@ pub enum FollowError {
     },
 }
 
-/// What the births and deaths of a frame need to know about the run.
+/// The settings of the run that births and deaths in a frame depend on.
 pub(crate) struct FlowSurface<'a> {
     pub(crate) bounds: Bounds,
     pub(crate) survey: &'a Survey,
@@ -170,8 +170,8 @@ struct Bearing {
     index: u32,
 }
 
-/// A particle with too little energy, and the least radius of a gap next to it in which it gets a
-/// child.
+/// A particle with too little energy. It gets a child in a gap next to it that has at least this
+/// radius.
 struct Sparse {
     parent: usize,
     least: f32,
@@ -211,7 +211,7 @@ pub(crate) struct Flow {
     landing: Vec<CircleLanding>,
 }
 
-/// What a balance stores for every particle.
+/// Columns of a balance: a value for every particle.
 #[derive(Clone, Default)]
 struct BalanceColumns {
     handle: Vec<GridHandle>,
@@ -387,7 +387,7 @@ impl Flow {
         }
     }
 
-    /// Lets a particle die whose neighbours have been found.
+    /// Lets a particle die, and updates the neighbours that have been found for it.
     fn kill(&mut self, particles: &Particles, i: usize) {
         self.columns.is_dead[i] = true;
         self.grids.remove(self.columns.handle[i]);
@@ -510,7 +510,7 @@ impl Flow {
         usual
     }
 
-    /// Lets particles die whose energy is too large and larger than that of all around them.
+    /// Lets each particle die whose energy is too large and exceeds its neighbours'.
     /// Returns those with too little energy.
     fn find_extrema(&mut self, particles: &Particles, usual: f32) -> Vec<Sparse> {
         let mut sparse = Vec::new();
@@ -656,8 +656,8 @@ fn energy_of(distance_sq: f32, sum: f32) -> f32 {
     pair_energy(4.0 * distance_sq / (sum * sum))
 }
 
-/// The circle on which a particle's child in a direction lies, `share` times as large as in a
-/// front.
+/// The circle on which a child of a particle is placed in a direction. Its radius is `share` times
+/// that of the circle of a front.
 fn circle_around(particles: &Particles, parent: usize, direction: Vec3, share: f32) -> ChildCircle {
     let OrientedPoint { position, normal } = OrientedPoint::of(particles, parent);
     let radius = 2.0 * particles.radius[parent] * share;
