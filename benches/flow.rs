@@ -11,7 +11,8 @@
 
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
-use marching_particles::{Figures, Method, Run, Sampling, Settings, SizeMode};
+use marching_particles::quality::Figures;
+use marching_particles::{Method, Run, Sampling, Settings, SizeMode};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 use std::borrow::Cow;

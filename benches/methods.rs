@@ -17,7 +17,8 @@ use marching_particles::field::rbf::RbfField;
 use marching_particles::field::{Field, gallery, model};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::fit_model;
-use marching_particles::{Figures, Method, Run, Sampling, Settings, SizeMode, Warning};
+use marching_particles::quality::Figures;
+use marching_particles::{Method, Run, Sampling, Settings, SizeMode, Warning};
 use std::io::{self, Write};
 use std::time::Instant;
 

@@ -21,15 +21,14 @@ use criterion::{BatchSize, Criterion, Throughput, criterion_group};
 use fast_surface_nets::ndshape::{RuntimeShape, Shape};
 use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use glam::Vec3;
-use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
-use marching_particles::field::gallery;
-use marching_particles::field::model;
 use marching_particles::field::rbf::RbfField;
+use marching_particles::field::{Field, gallery, model};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::fit_model;
 use marching_particles::quality::{MeasureOptions, measure};
-use marching_particles::{Phase, Radius, Run, Sampling, Settings, SizeMode, StopReason};
+use marching_particles::sampler::Phase;
+use marching_particles::{Radius, Run, Sampling, Settings, SizeMode, StopReason};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 

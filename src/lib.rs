@@ -30,6 +30,22 @@
 //! opt-level = 3
 //! ```
 //!
+//! # Modules
+//!
+//! At the root stands what most programs use. The rest has a module for each subject:
+//!
+//! | For | At the root | More |
+//! |---|---|---|
+//! | sampling | [`sample`], [`Sample`], [`Run`], [`Progress`], [`StopReason`] | [`run`]: what is measured, values of a program, what may be wrong |
+//! | how | [`Settings`], [`Sampling`], [`Radius`], [`Spacing`], [`SizeMode`], [`LawKind`], [`Method`], [`Pattern`], [`Counting`], [`GapPolicy`], [`Bounds`] | [`sampler`]: what a run tells of itself |
+//! | of what | [`Formula`], [`gallery`], [`Field`] | [`field`]: functions of a program in every form |
+//! | solids of several fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`] | |
+//! | points, images, meshes | [`fit_points`], [`Image`], [`TriangleMesh`] | [`pointcloud`], [`image`], [`remesh`] |
+//! | with what result | [`Particles`], [`Report`], [`Warning`], [`Error`] | [`particles`], [`mesh`]: triangles, bodies, topology; [`quality`]: the figures |
+//! | in which file | [`Format`], [`MeshFormat`] | [`export`]: record, size and place of a mesh |
+//!
+//! Vectors are those of [glam].
+//!
 //! # Conventions
 //!
 //! * f < 0 inside; the gradient and the normal point outward.
@@ -52,7 +68,7 @@
 //! three-dimensional images; both of them sample triangle meshes anew. With `parallel` all threads
 //! of the current [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of
 //! the mesh, natively; the results are the same. Functions of the program are then called from
-//! several threads at once. A program that does such work in [steps](Reporting::step) takes them in
+//! several threads at once. A program that does such work in [steps](run::Reporting::step) takes them in
 //! a thread of the pool, as within `rayon::scope`: another thread would wait for each share.
 //!
 //! # Glossary
@@ -88,28 +104,6 @@
 //! | defect | A particle of a mesh whose valence is not six, or on the border not four. |
 //! | refinement | Ordering a coarse front as a mesh and halving its edges, level by level. |
 //! | flow | Particles of a finished run that follow a moving surface, frame by frame. |
-//!
-//! # What stands at the root
-//!
-//! | For | Items |
-//! |---|---|
-//! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
-//! | its settings | [`Settings`], [`Spacing`], [`SpacedSettings`], [`Sampling`], [`Radius`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Pattern`], [`Counting`], [`Bounds`], [`Reach`] |
-//! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`Thickness`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [`PorosityError`], [gallery] |
-//! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`PiecewiseFn`], [`BatchPiecewise`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Pieces`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [`Within`], [glam] |
-//! | solids of several fields | [`union`], [`intersection`], [`difference`], [`smooth_union`], [`offset`], [`IntoFields`], [`Combined`] |
-//! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
-//! | three-dimensional images | [`Image`], [`ImageField`], [`ImageChoice`], [`ImageSurface`], [`ImageOutline`], [`ImagePlacement`], [`Voxel`], [`VoxelType`], [`Label`], [`DEFAULT_LABEL_WIDTH`], [`ImageFormat`], [`RawVoxels`], [`ImageError`], [`ImageReadError`] |
-//! | triangle meshes | [`TriangleMesh`], [`MeshSolid`], [`MeshRepairs`], [`MeshOptions`], [`MeshEdges`], [`MeshField`], [`MeshKind`], [`MeshRim`], [`MeshChange`], [`MeshDistances`], [`MeshError`] |
-//! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Body`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
-//! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measured`], [`Measures`], [`Cut`] |
-//! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`]; [`Value`], [`NamedValues`] |
-//! | what may be wrong | [`Warning`], [`Severity`], [`Doubt`], [`Refusal`], [`Spot`] |
-//! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`], [`FollowError`], [`ValueError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
-//! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Bodies`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
-//!
-//! The modules behind the root are public for the project's own tests, benchmarks and page and may
-//! change at any time; ARCHITECTURE.md says what each is for and who may use whom.
 
 #![cfg_attr(
     target_arch = "wasm32",
@@ -119,42 +113,32 @@
     )
 )]
 
+pub mod export;
+pub mod field;
+#[cfg(feature = "images")]
+pub mod image;
+pub mod mesh;
+pub mod particles;
+#[cfg(feature = "points")]
+pub mod pointcloud;
+pub mod quality;
+#[cfg(all(feature = "images", feature = "points"))]
+pub mod remesh;
+pub mod run;
+pub mod sampler;
+
+// For the project's own page, command line, tests and benches. These, and whatever else is hidden
+// in the modules above, may change at any time.
 #[doc(hidden)]
 pub mod differential;
 #[doc(hidden)]
-pub mod export;
-#[doc(hidden)]
 pub mod extent;
-#[doc(hidden)]
-pub mod field;
-#[cfg(feature = "images")]
-#[doc(hidden)]
-pub mod image;
 #[doc(hidden)]
 pub mod lesson;
 #[doc(hidden)]
 pub mod math;
 #[doc(hidden)]
-pub mod mesh;
-#[cfg(all(test, feature = "points"))]
-mod page_types {
-    mod tests;
-}
-#[doc(hidden)]
 pub mod paper;
-#[doc(hidden)]
-pub mod particles;
-#[cfg(feature = "points")]
-#[doc(hidden)]
-pub mod pointcloud;
-#[doc(hidden)]
-pub mod quality;
-#[cfg(all(feature = "images", feature = "points"))]
-#[doc(hidden)]
-pub mod remesh;
-mod run;
-#[doc(hidden)]
-pub mod sampler;
 #[doc(hidden)]
 pub mod session;
 #[doc(hidden)]
@@ -164,59 +148,37 @@ pub mod spatial;
 #[doc(hidden)]
 pub mod topology;
 
-pub use export::{
-    Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Unit, UpAxis, Vertices,
-};
-pub use extent::Reach;
-pub use field::formula::{
-    Expr, Formula, FormulaError, FormulaErrorKind, Mended, Parameter, PorosityError, Thickness,
-};
-#[cfg(feature = "points")]
-pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSource};
-#[cfg(feature = "points")]
-pub use field::rbf::RbfField;
-pub use field::{
-    BatchField, BatchPiecewise, Bounded, Combined, Enclosure, Evaluator, Facts, Field, FieldError, FnField,
-    Frame, IntoField, IntoFields, Jet, Pieces, PiecewiseFn, SharedError, UnitCell, Within, difference,
-    gallery, intersection, offset, smooth_union, union,
-};
+#[cfg(all(test, feature = "points"))]
+mod page_types {
+    mod tests;
+}
+
+#[doc(inline)]
+pub use export::{Format, MeshFormat};
+#[doc(inline)]
+pub use field::formula::Formula;
+#[doc(inline)]
+pub use field::{Field, difference, gallery, intersection, offset, smooth_union, union};
 pub use glam;
 #[cfg(feature = "images")]
-pub use image::{
-    DEFAULT_LABEL_WIDTH, Image, ImageChoice, ImageError, ImageField, ImageFormat, ImageOutline,
-    ImageReadError, ImageSurface, Label, Placement as ImagePlacement, RawVoxels, Section, Voxel, VoxelType,
-};
-pub use math::{Bounds, BoxError, Interval, Sym3};
-pub use mesh::bodies::{Bodies, Body};
-pub use mesh::facing::Inside;
-pub use mesh::triangulation::Triangulation;
-pub use particles::{OppositeFaces, Particles, SlotFate, Slots};
+#[doc(inline)]
+pub use image::Image;
+pub use math::Bounds;
+#[doc(inline)]
+pub use particles::Particles;
 #[cfg(feature = "points")]
-pub use pointcloud::CloudError;
-#[cfg(feature = "points")]
-pub use pointcloud::fit::{Fit, FitError};
-#[cfg(feature = "points")]
+#[doc(inline)]
 pub use pointcloud::fit_points;
-#[cfg(feature = "points")]
-pub use pointcloud::job::JobError;
-#[cfg(feature = "points")]
-pub use pointcloud::read::{InputFormat, ReadError};
-pub use quality::{Figures, Histogram, Hole, Measurements, NamedValues, Pair, Places, figures};
 #[cfg(all(feature = "images", feature = "points"))]
-pub use remesh::{
-    MeshChange, MeshDistances, MeshEdges, MeshError, MeshField, MeshKind, MeshOptions, MeshRepairs, MeshRim,
-    MeshSolid, TriangleMesh,
-};
-pub use run::{
-    Cut, Error, Growth, Measured, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run,
-    Sample, Severity, Start, Value, ValueError, Warning, sample,
-};
+#[doc(inline)]
+pub use remesh::TriangleMesh;
+#[doc(inline)]
+pub use run::{Error, Report, Run, Sample, Warning, sample};
+#[doc(inline)]
 pub use sampler::{
-    Counting, Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Pattern, Phase, Progress, Radius,
-    Refusal, Sampled, Sampling, Search, Settings, SettingsError, SizeMode, SpacedSettings, Spacing, Spot,
-    StopReason, Unsampled,
+    Counting, GapPolicy, LawKind, Method, Pattern, Progress, Radius, Sampling, Settings, SizeMode, Spacing,
+    StopReason,
 };
-pub use topology::{Component, Topology};
 
 /// The examples of the README, compiled and run as tests.
 #[cfg(doctest)]

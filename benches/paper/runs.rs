@@ -1,16 +1,15 @@
 //! One run of a method on a job: particles, steps, times and figures.
 
 use glam::Vec3;
-use marching_particles::field::Field;
-use marching_particles::field::gallery;
-use marching_particles::field::model;
 use marching_particles::field::rbf::RbfField;
+use marching_particles::field::{Field, gallery, model};
 use marching_particles::lesson::{self, ChapterKind, Lesson};
 use marching_particles::math::Bounds;
 use marching_particles::paper::Particle;
 use marching_particles::pointcloud::fit_model;
 use marching_particles::quality::{self, Figures};
-use marching_particles::{LawKind, Phase, Run, Sampling, Settings, SizeMode};
+use marching_particles::sampler::Phase;
+use marching_particles::{LawKind, Run, Sampling, Settings, SizeMode};
 use std::time::Instant;
 
 /// A surface that the paper samples, or what stands in for it.

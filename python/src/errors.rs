@@ -1,10 +1,12 @@
 //! Converts errors of the core to exceptions of Python.
 
-use marching_particles::field::formula::Thickness;
+use marching_particles::Error;
+use marching_particles::field::FieldError;
+use marching_particles::field::formula::{FormulaError, FormulaErrorKind, Thickness};
+use marching_particles::pointcloud::JobError;
+use marching_particles::run::ValueError;
+use marching_particles::sampler::SettingsError;
 use marching_particles::session::{Condition, Fault, FaultKind, SolidSettings};
-use marching_particles::{
-    Error, FieldError, FormulaError, FormulaErrorKind, JobError, SettingsError, ValueError,
-};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;

@@ -1,14 +1,13 @@
 //! The fields that can be sampled: a formula, functions of Python, or a surface through points.
 
 use crate::errors;
-use marching_particles::extent;
+use marching_particles::field::{BatchField, BatchPiecewise, Combined};
 use marching_particles::glam::DVec3;
+use marching_particles::image::{ImageChoice, ImageError, VoxelType};
 use marching_particles::pointcloud::job::Job;
+use marching_particles::remesh::{MeshEdges, MeshError, MeshField, MeshKind, MeshOptions};
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{
-    BatchField, BatchPiecewise, Bounds, Combined, Formula, Image, ImageChoice, ImageError, MeshEdges,
-    MeshError, MeshField, MeshKind, MeshOptions, TriangleMesh, VoxelType,
-};
+use marching_particles::{Bounds, Formula, Image, TriangleMesh, extent};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

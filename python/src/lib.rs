@@ -6,7 +6,7 @@ mod field;
 mod run;
 
 use field::{Field, Mesh};
-use marching_particles::CENTRES;
+use marching_particles::pointcloud::CENTRES;
 use marching_particles::session::settings;
 use pyo3::prelude::*;
 use run::{Sample, sample};

@@ -2,12 +2,13 @@
 
 use crate::errors;
 use crate::field::Field;
+use marching_particles::export::{RecordText, Vertices};
+use marching_particles::quality::NamedValues;
+use marching_particles::run::{Measured, Value};
 use marching_particles::session::{
     Asked, Fault, Lengths, Session, SolidSettings, SpacingText, without_effect,
 };
-use marching_particles::{
-    Bounds, Measured, NamedValues, RecordText, Settings, Spacing, Value, Vertices, Warning,
-};
+use marching_particles::{Bounds, Settings, Spacing, Warning};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -7,17 +7,19 @@ use crate::spacing::{SpacingOption, spacing, units};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use marching_particles::RawVoxels;
-use marching_particles::export::VERTICES;
-use marching_particles::field::{model, rbf::Pull};
+use marching_particles::export::{Bodies, Placement, Unit, UpAxis, VERTICES, Vertices};
+use marching_particles::field::formula::Thickness;
+use marching_particles::field::model;
+use marching_particles::field::rbf::Pull;
+use marching_particles::image::RawVoxels;
 use marching_particles::math::{Bounds, BoxError, shortest_text};
 use marching_particles::pointcloud::job::CENTRES;
+use marching_particles::remesh::MeshEdges;
+use marching_particles::run::Measured;
 use marching_particles::session::{
     BeyondPoints, BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings,
 };
-use marching_particles::{
-    Bodies, Format, Measured, MeshEdges, MeshFormat, Placement, Thickness, Unit, UpAxis, Vertices, gallery,
-};
+use marching_particles::{Format, MeshFormat, gallery};
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;

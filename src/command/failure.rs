@@ -1,9 +1,9 @@
 //! Errors of the tool, with their messages and exit codes.
 
-use marching_particles::field::formula::Mended;
+use marching_particles::field::formula::{FormulaErrorKind, Mended};
 use marching_particles::math::{shortest_text, significant};
+use marching_particles::sampler::SettingsError;
 use marching_particles::session::{Fault, FaultKind, settings};
-use marching_particles::{FormulaErrorKind, SettingsError};
 use std::fmt;
 use std::path::PathBuf;
 use std::process::ExitCode;

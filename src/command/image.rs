@@ -3,8 +3,9 @@
 use crate::arguments::SurfaceArguments;
 use crate::failure::Failure;
 use crate::options::number;
+use marching_particles::Image;
+use marching_particles::image::{ImageChoice, ImageField, ImageSurface, RawVoxels, VoxelType};
 use marching_particles::math::{grouped, significant};
-use marching_particles::{Image, ImageChoice, ImageField, ImageSurface, RawVoxels, VoxelType};
 use serde::Serialize;
 use std::path::Path;
 

@@ -6,12 +6,13 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use marching_particles::field::formula;
+use marching_particles::field::formula::FormulaErrorKind;
 use marching_particles::math::{Bounds, grouped, shortest_text};
 use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{
     Setting, SettingGroup, SettingKind, SettingValue, SolidSettings, settings, without_effect,
 };
-use marching_particles::{FormulaErrorKind, Radius, Settings};
+use marching_particles::{Radius, Settings};
 use serde_json::{Map, Value as Json};
 use std::ops::RangeInclusive;
 

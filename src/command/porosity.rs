@@ -4,8 +4,9 @@
 use crate::failure::Failure;
 use crate::outcome::Porosity;
 use crate::surface::{fit, refused_solid};
+use marching_particles::field::formula::Thickness;
 use marching_particles::session::{FieldRequest, Session, SolidSettings, Source};
-use marching_particles::{Bounds, Settings, Thickness};
+use marching_particles::{Bounds, Settings};
 
 /// Largest difference from the wanted share that needs no correction.
 const CLOSE: f64 = 1e-3;

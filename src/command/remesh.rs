@@ -3,9 +3,11 @@
 use crate::arguments::SurfaceArguments;
 use crate::failure::Failure;
 use crate::output::STANDARD;
+use marching_particles::export::Vertices;
 use marching_particles::math::{counted, grouped, significant};
+use marching_particles::remesh::{MeshChange, MeshField, MeshOptions};
 use marching_particles::session::{MeshInfo, MeshPart, MeshScan};
-use marching_particles::{MeshChange, MeshField, MeshOptions, Sample, TriangleMesh, Vertices};
+use marching_particles::{Sample, TriangleMesh};
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
@@ -135,7 +137,7 @@ impl RemeshInfo {
         let Some(change) = &self.change else { return Vec::new() };
         let share =
             |length: f64| format!("{} ({:.4} %)", significant(length), 100.0 * length / change.diagonal);
-        let distances = |name: &str, own: &marching_particles::MeshDistances| {
+        let distances = |name: &str, own: &marching_particles::remesh::MeshDistances| {
             format!(
                 "{name}: mean {}, 99 % below {}, largest {} of the diagonal",
                 share(own.mean),

@@ -11,14 +11,12 @@ use crate::surface::{Origin, choose, fit, read_text};
 use crate::wall::Wall;
 use crate::{code, summary};
 use indicatif::ProgressBar;
-use marching_particles::export::VERTICES;
+use marching_particles::export::{MeshFile, ParticleFile, Placement, RecordText, VERTICES, Vertices};
 use marching_particles::math::grouped;
-use marching_particles::sampler::{COUNT_ROOM, SizeMode};
+use marching_particles::run::{Reach, Value};
+use marching_particles::sampler::{COUNT_ROOM, Phase, SizeMode};
 use marching_particles::session::{Fault, FileRecord, Session, Source};
-use marching_particles::{
-    Bounds, Error, Format, MeshFile, MeshFormat, ParticleFile, Phase, Placement, Reach, RecordText, Run,
-    Settings, StopReason, Value, Vertices,
-};
+use marching_particles::{Bounds, Error, Format, MeshFormat, Run, Settings, StopReason};
 use std::borrow::Cow;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,10 +1,13 @@
 //! Report of a run as text.
 
 use crate::outcome::{MeshCounts, Outcome, Porosity};
+use marching_particles::export::Unit;
+use marching_particles::field::formula::Thickness;
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::math::{counted, grouped, significant};
+use marching_particles::mesh::Inside;
+use marching_particles::run::{Cut, Severity};
 use marching_particles::session::{ReportRow, SpacingText, describe};
-use marching_particles::{Cut, Inside, Severity, Thickness, Unit};
 use serde_json::Value;
 use std::io::{self, Write};
 

@@ -6,8 +6,9 @@ use crate::failure::{Failure, LIMIT};
 use crate::output::OutputFile;
 use crate::surface::{choose, fit, read_text};
 use marching_particles::quality::Measurements;
+use marching_particles::sampler::FollowError;
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Bounds, FollowError, Particles, StopReason, export};
+use marching_particles::{Bounds, Particles, StopReason, export};
 use std::io::Write;
 use std::process::ExitCode;
 

@@ -4,8 +4,10 @@
 use crate::arguments::{Length, SampleArguments};
 use crate::failure::Failure;
 use crate::surface::{fit, refused_solid};
+use marching_particles::export::{Bodies, Unit};
+use marching_particles::field::formula::Thickness;
 use marching_particles::session::{Session, SolidSettings, Source};
-use marching_particles::{Bodies, Bounds, Run, Settings, Thickness, Unit};
+use marching_particles::{Bounds, Run, Settings};
 
 /// Largest relative difference from the wanted wall that needs no correction: printers do not
 /// resolve it.

@@ -10,10 +10,14 @@ mod three_mf;
 mod vertices;
 
 pub use crate::mesh::bodies::Bodies;
-pub use mesh::{MeshFile, MeshFormat, write_mesh};
+#[doc(hidden)]
+pub use mesh::write_mesh;
+pub use mesh::{MeshFile, MeshFormat};
 pub use placement::{Placement, Unit, UpAxis};
 pub use record::RecordText;
-pub use vertices::{MeshBuffers, VERTICES, Vertices, VerticesChoice};
+pub use vertices::{MeshBuffers, Vertices};
+#[doc(hidden)]
+pub use vertices::{VERTICES, VerticesChoice};
 
 pub(crate) use file::{File, FileContent};
 
@@ -74,6 +78,7 @@ impl From<Format> for ParticleFile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
+#[doc(hidden)]
 pub enum ColumnKind {
     /// A coordinate: in double precision where the particles have an origin of their own, else in
     /// single precision.
@@ -91,6 +96,7 @@ pub enum ColumnKind {
 /// A column of PLY and CSV files, here and on the page.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
+#[doc(hidden)]
 pub struct Column {
     /// Name in the file.
     pub name: &'static str,
@@ -185,6 +191,7 @@ const fn column(
 }
 
 /// The columns of PLY and CSV files, in their order.
+#[doc(hidden)]
 pub const COLUMNS: &[Column] = &[
     column("x", ColumnKind::Coordinate, |particles, _, i| coordinates(particles, i)[0]),
     column("y", ColumnKind::Coordinate, |particles, _, i| coordinates(particles, i)[1]),
@@ -249,6 +256,7 @@ fn added(measured: &quality::Measurements, row: usize) -> impl Iterator<Item = C
 /// # Errors
 ///
 /// The errors of `out`.
+#[doc(hidden)]
 pub fn write(
     ParticleFile { format, record }: &ParticleFile,
     particles: &Particles,

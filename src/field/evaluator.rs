@@ -298,8 +298,8 @@ pub trait Bounded: Evaluator {
 /// boxes are relative to the [frame](Evaluator::frame).
 ///
 /// Formulas with maxima, minima and absolute values, and [combined](crate::union) solids, know
-/// their pieces; [`PiecewiseFn`](crate::PiecewiseFn) takes them from functions of the program; for
-/// other functions they are found in the values of f.
+/// their pieces; [`PiecewiseFn`](crate::field::PiecewiseFn) takes them from functions of the
+/// program; for other functions they are found in the values of f.
 pub trait Pieces {
     /// The label of the piece that gives f at `p`; 0 where f is smooth everywhere.
     fn label(&mut self, p: DVec3) -> u32;

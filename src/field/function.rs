@@ -17,8 +17,8 @@ use glam::DVec3;
 /// of 64 cells along the longest side of the box: particles lie on them, and the mesh is closed
 /// along them. Edges smaller than a cell may be missed; edges that fade out, or of a function in
 /// single precision, are not found: the mesh is open there, and the report says where. A
-/// [`PiecewiseFn`](crate::PiecewiseFn) says where its edges are, and so do separate bodies joined
-/// by [`union`](crate::union).
+/// [`PiecewiseFn`](crate::field::PiecewiseFn) says where its edges are, and so do separate bodies
+/// joined by [`union`](crate::union).
 ///
 /// Give the box of the surface if it is known ([`Settings::in_box`](crate::Settings::in_box)).
 /// Without one, grids of 32 cells a side look for changes of sign over cubes around the origin,
@@ -31,11 +31,12 @@ use glam::DVec3;
 ///
 /// A slow function is called less often with a given box, with its gradient, with a coarser survey
 /// ([`Settings::survey_cells`](crate::Settings::survey_cells)) and without measuring
-/// ([`Measured::Nothing`](crate::Measured::Nothing)); [`FnField::limit_calls`] sets a limit.
+/// ([`Measured::Nothing`](crate::run::Measured::Nothing)); [`FnField::limit_calls`] sets a limit.
 ///
 /// ```
 /// use glam::DVec3;
-/// use marching_particles::{FnField, Settings, sample};
+/// use marching_particles::field::FnField;
+/// use marching_particles::{Settings, sample};
 ///
 /// let sphere = FnField::new(|p: DVec3| p.length() - 1.0).with_gradient(|p| p.normalize_or_zero());
 /// assert_eq!(sample(sphere, &Settings::with_count(500))?.report().proof.components, 1);

@@ -2,7 +2,8 @@
 //!
 //! A [`Field`] is a function that does not change. Its [`Evaluator`] has the memory to evaluate
 //! batches of points, and if it is [`Bounded`] it bounds f over boxes. [`formula`] makes fields
-//! from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
+//! from text, and [`gallery`] holds named formulas. [`FnField`], [`BatchField`], [`PiecewiseFn`]
+//! and [`BatchPiecewise`] take functions of the program.
 
 mod combined;
 pub(crate) mod crossing;
@@ -14,10 +15,13 @@ pub mod formula;
 mod function;
 pub mod gallery;
 mod given;
+#[doc(hidden)]
 pub mod model;
 mod piecewise;
+#[doc(hidden)]
 pub mod rbf;
 
+pub use crate::math::{Interval, Sym3};
 pub use crate::slices::{MaybeSend, MaybeSync};
 pub use combined::{Combined, difference, intersection, offset, smooth_union, union};
 pub use evaluator::{Bounded, Evaluator, Frame, Pieces};
@@ -27,7 +31,7 @@ pub use piecewise::{BatchPiecewise, PiecewiseFn};
 
 use evaluator::Pointwise;
 
-use crate::math::{Bounds, Interval, Sym3};
+use crate::math::Bounds;
 use crate::slices::Work;
 use core::any::Any;
 use core::ops::Deref;

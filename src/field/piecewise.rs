@@ -19,8 +19,9 @@ use glam::DVec3;
 /// the values.
 ///
 /// ```
+/// use marching_particles::field::PiecewiseFn;
 /// use marching_particles::glam::DVec3;
-/// use marching_particles::{PiecewiseFn, Settings, sample};
+/// use marching_particles::{Settings, sample};
 ///
 /// // A ball with its top cut off.
 /// let piece = |label: u32, p: DVec3| if label == 0 { p.length() - 1.0 } else { p.z - 0.5 };

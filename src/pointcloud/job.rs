@@ -52,7 +52,7 @@ pub enum JobError {
         /// The identifier.
         id: String,
     },
-    /// The number of centres is not one of [`CENTRES`](crate::CENTRES).
+    /// The number of centres is not one of [`CENTRES`](crate::pointcloud::CENTRES).
     #[error("{count} centres: choose {} to {}", CENTRES.start(), CENTRES.end())]
     Centres {
         /// Number of centres that was given.

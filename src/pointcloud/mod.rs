@@ -1,34 +1,41 @@
-//! Models from points: a function near the points of a file or of a built-in model.
+//! Surfaces through points: a function fitted to the points of a file, by [`fit_points`].
 //!
-//! A file is read to a [`Cloud`] of points with normals. A few hundred of them, far apart, become
-//! the centres of a radial basis function, which a linear system fits to all points. The result is
-//! an [`RbfData`](crate::field::rbf::RbfData). The sampler's core needs nothing else, so the page
-//! can solve in a separate module and worker.
+//! A file is read to points with normals. A few hundred of them, far apart, become the centres of a
+//! radial basis function, which a linear system fits to all points: an [`RbfField`]. The sampler's
+//! core needs nothing else, so the page can solve in a separate module and worker.
 
 mod border;
 mod eigen;
+#[doc(hidden)]
 pub mod fit;
+#[doc(hidden)]
 pub mod job;
+#[doc(hidden)]
 pub mod models;
+#[doc(hidden)]
 pub mod normals;
+#[doc(hidden)]
 pub mod read;
 mod solve;
+#[doc(hidden)]
 pub mod thin;
 
-pub use crate::field::model::{ModelInfo, NormalSource};
+pub use crate::field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSource};
+pub use crate::field::rbf::RbfField;
+pub use fit::{Fit, FitError};
+pub use job::JobError;
+pub use read::{InputFormat, ReadError};
 
 use crate::field::model::{DEFAULT_CENTRES, Model};
 use crate::slices;
-use fit::Fit;
 use glam::DVec3;
-use job::{Job, JobError};
+use job::Job;
 
 /// Fits a surface to the points of a file: PLY, OBJ, STL, OFF, GLB, PCD, or text with one point per
 /// line (XYZ, PTS, CSV). The content decides; if it is ambiguous, the extension of `name`. A
-/// function with this number of `centres`, one of [`CENTRES`](crate::CENTRES), is fitted to all
-/// points; cross-validation decides how much noise is smoothed. Normals come from the file, else
-/// from its faces, else they are estimated. Large faces get more points, so that the surface
-/// follows them.
+/// function with this number of `centres`, one of [`CENTRES`], is fitted to all points;
+/// cross-validation decides how much noise is smoothed. Normals come from the file, else from its
+/// faces, else they are estimated. Large faces get more points, so that the surface follows them.
 ///
 /// # Errors
 ///
@@ -52,6 +59,7 @@ pub fn fit_model(model: &Model) -> Fit {
 
 /// Points, with unit normals that point outward.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct Cloud {
     /// Positions.
     pub position: Vec<DVec3>,

@@ -47,6 +47,7 @@ mod spacing;
 mod triangles;
 
 pub use figures::Figures;
+#[doc(hidden)]
 pub use options::MeasureOptions;
 pub use places::{CROWDED, Hole, Pair, Places, WIDE};
 pub use spacing::Histogram;
@@ -157,6 +158,7 @@ pub(crate) struct Opening {
 /// what is undefined (the spacing of one particle, angles without triangles) is NaN, and non-finite
 /// positions are counted and left out.
 #[must_use]
+#[doc(hidden)]
 pub fn measure(
     position: &[Vec3],
     normal: &[Vec3],

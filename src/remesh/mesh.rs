@@ -9,8 +9,9 @@ use glam::DVec3;
 /// A triangle mesh, as a file or a program gives it.
 ///
 /// ```
-/// use marching_particles::{MeshOptions, Settings, TriangleMesh, sample};
 /// use marching_particles::glam::dvec3;
+/// use marching_particles::remesh::MeshOptions;
+/// use marching_particles::{Settings, TriangleMesh, sample};
 ///
 /// // A tetrahedron, whose corners and edges are kept.
 /// let corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]];

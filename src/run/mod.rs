@@ -24,8 +24,10 @@ pub use severity::Severity;
 pub use values::{Value, ValueError};
 pub use warning::Warning;
 
+pub use crate::extent::Reach;
+pub use crate::math::BoxError;
+
 use crate::differential::{self, Curvature};
-use crate::extent::Reach;
 use crate::field::edges::KnownPieces;
 use crate::field::{Evaluator, Field, FieldError, IntoField};
 use crate::math::Bounds;
@@ -215,7 +217,7 @@ impl<'f, F: Field + 'f> Run<'f, F> {
     ///
     /// The start surveys the box and fixes the radius. A fitted box is found by bounds of the field
     /// if it has any, otherwise by the signs of f on grids, with some hundred thousand evaluations:
-    /// [`FnField`](crate::FnField) says what these can miss.
+    /// [`FnField`](crate::field::FnField) says what these can miss.
     ///
     /// # Errors
     ///

@@ -23,10 +23,11 @@ use std::sync::{Arc, OnceLock};
 ///
 /// The surface is sampled in the box of the settings, or in one that fits it: around all of a
 /// bounded surface, or a part of an unbounded one. The box of a field without
-/// [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give the
-/// box if it is known. The settings are [`Settings`](crate::Settings) or [`SpacedSettings`]. The
-/// same field, settings and seed give the same particles to the last bit, on every platform. For
-/// progress, cancelling or slices of work use a [`Run`].
+/// [bounds](crate::field::Bounded) is fitted to what grids show
+/// ([`FnField`](crate::field::FnField)): give the box if it is known. The settings are
+/// [`Settings`](crate::Settings) or [`SpacedSettings`]. The same field, settings and seed give the
+/// same particles to the last bit, on every platform. For progress, cancelling or slices of work
+/// use a [`Run`].
 ///
 /// # Errors
 ///
@@ -157,7 +158,9 @@ impl Sample {
     /// The [mesh](Sample::mesh) as lists of vertices and triangles, as its files have it.
     ///
     /// ```
-    /// use marching_particles::{Formula, Settings, Topology, Vertices, sample};
+    /// use marching_particles::export::Vertices;
+    /// use marching_particles::mesh::Topology;
+    /// use marching_particles::{Formula, Settings, sample};
     ///
     /// let cube = Formula::parse("max(|x|, |y|, |z|) = 1")?;
     /// let sample = sample(cube, &Settings::with_count(1_000))?;

@@ -18,7 +18,8 @@ use std::sync::Arc;
 /// A number at each particle, by a formula or a function of position.
 ///
 /// ```
-/// use marching_particles::{Format, Formula, Settings, Value, sample};
+/// use marching_particles::run::Value;
+/// use marching_particles::{Format, Formula, Settings, sample};
 ///
 /// let torus = Formula::parse("(hypot(x, y) - 1)^2 + z^2 = 0.16")?;
 /// let mut sample = sample(&torus, &Settings::with_count(2_000))?;
@@ -122,8 +123,8 @@ impl Value {
     ///
     /// # Errors
     ///
-    /// Any of [`FormulaErrorKind`](crate::FormulaErrorKind), with its span in bytes of `text`:
-    /// `UnknownName` for another name.
+    /// Any of [`FormulaErrorKind`](crate::field::formula::FormulaErrorKind), with its span in bytes
+    /// of `text`: `UnknownName` for another name.
     pub fn parse(text: &str) -> Result<Self, FormulaError> {
         Self::of_formula(text, &[])
     }

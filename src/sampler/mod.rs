@@ -1,4 +1,4 @@
-//! The sampler covers a surface with particles and relaxes them.
+//! How a surface is covered with particles: the settings, and what a run tells of itself.
 //!
 //! [`Sampler::begin`] surveys the field and fixes the radius; each [`Sampler::step`] then does a
 //! given number of units of work. A budget is a count, never a time, and how a run is cut into
@@ -55,6 +55,7 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::slices::Work;
 use attempt::Attempt;
+#[doc(hidden)]
 pub use constraint::Creases;
 use core::hint::black_box;
 use cover::Cover;
@@ -87,6 +88,7 @@ pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
 
 /// A sampler, which covers one surface at a time with particles. A new one has nothing to do.
 #[derive(Default)]
+#[doc(hidden)]
 pub struct Sampler<'f> {
     settings: Settings,
     /// The spacing by a function, if there is one, and whether sizes also follow the curvature.

@@ -52,8 +52,8 @@ pub struct Progress {
     pub relax_steps: u32,
     /// Points at which the survey and all phases have evaluated the field so far, whatever
     /// derivatives they asked for. A function is called more often: several times for each
-    /// derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the
-    /// proof, which are not counted.
+    /// derivative by differences ([`FnField`](crate::field::FnField)), and for the box, the set-up
+    /// and the proof, which are not counted.
     pub evaluations: u64,
     /// Estimated share of the work done. It never decreases until more work is requested.
     pub fraction: f64,

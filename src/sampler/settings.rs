@@ -181,8 +181,8 @@ pub struct Settings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<Radius>,
     /// Grid cells along the longest side of the box, to find a surface whose field has no
-    /// [bounds](crate::Bounded): a part smaller than a cell may be missed. Half as many take a
-    /// quarter of the evaluations. The default is 64.
+    /// [bounds](crate::field::Bounded): a part smaller than a cell may be missed. Half as many take
+    /// a quarter of the evaluations. The default is 64.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub survey_cells: Option<u32>,
     /// Uniform or adaptive sampling.
@@ -236,6 +236,7 @@ const MOST_WANTED: f64 = 4e6;
 
 /// Room for the expected particles, as a multiple of them: a wanted count is met within 3 %, and a
 /// first attempt may place some too many.
+#[doc(hidden)]
 pub const COUNT_ROOM: f64 = 1.1;
 
 /// The smallest and the largest radius that are accepted, as shares of the diagonal: on an area of

@@ -84,8 +84,8 @@ impl Spacing {
     ///
     /// # Errors
     ///
-    /// Any of [`FormulaErrorKind`](crate::FormulaErrorKind), with its span in bytes of `text`:
-    /// `UnknownName` for another name.
+    /// Any of [`FormulaErrorKind`](crate::field::formula::FormulaErrorKind), with its span in bytes
+    /// of `text`: `UnknownName` for another name.
     pub fn parse(text: &str) -> Result<Self, FormulaError> {
         Self::of_formula(text, &[])
     }
@@ -102,9 +102,9 @@ impl Spacing {
 
     /// The spacing by a function of the program, which is anything that can be
     /// [sampled](IntoField): a function of a point, or one of a batch of points that may fail. A
-    /// [`FnField`](crate::FnField) or [`BatchField`](crate::BatchField) may also
-    /// [limit](crate::FnField::limit_calls) the points of a call. If the function fails there is no
-    /// sample, and the error is [`SettingsError::SpacingFunction`].
+    /// [`FnField`](crate::field::FnField) or [`BatchField`](crate::field::BatchField) may also
+    /// [limit](crate::field::FnField::limit_calls) the points of a call. If the function fails
+    /// there is no sample, and the error is [`SettingsError::SpacingFunction`].
     pub fn by<Kind>(function: impl IntoField<Kind, Field: 'static>) -> Self {
         Self { function: Arc::new(function.into_field()), text: None, smallest: None, largest: None }
     }

@@ -649,7 +649,7 @@ impl Session {
     }
 
     /// [`Run::finish_with`], with the report of the session. `tell` is called now and then with the
-    /// finished [share of the work](crate::Reporting::fraction).
+    /// finished [share of the work](crate::run::Reporting::fraction).
     ///
     /// # Errors
     ///

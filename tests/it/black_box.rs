@@ -3,9 +3,8 @@
 use crate::black_box_table::{Function, Solid, block, more_solids, solids};
 use crate::cases;
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
-use marching_particles::{
-    Bounds, FnField, Method, PiecewiseFn, Sample, Settings, sample, smooth_union, union,
-};
+use marching_particles::field::{FnField, PiecewiseFn};
+use marching_particles::{Bounds, Method, Sample, Settings, sample, smooth_union, union};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 

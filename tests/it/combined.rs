@@ -3,11 +3,10 @@
 use glam::{DVec3, Vec3, dvec2, dvec3};
 use marching_particles::field::model::ModelInfo;
 use marching_particles::field::rbf::RbfData;
-use marching_particles::field::{Field, Frame};
+use marching_particles::field::{Combined, Field, FnField, Frame};
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{
-    Bounds, Combined, FnField, Formula, Sample, Settings, difference, intersection, offset, sample,
-    smooth_union, union,
+    Bounds, Formula, Sample, Settings, difference, intersection, offset, sample, smooth_union, union,
 };
 
 fn formula(text: &str) -> Formula {
@@ -227,10 +226,10 @@ fn calls_are_counted_and_limited() {
 
 mod with_a_model {
     use super::*;
-    use marching_particles::field::formula::MODEL;
-    use marching_particles::field::{model, rbf::RbfField};
+    use marching_particles::field::formula::{FormulaErrorKind, MODEL, Parameter};
+    use marching_particles::field::model;
+    use marching_particles::field::rbf::RbfField;
     use marching_particles::pointcloud::fit_model;
-    use marching_particles::{FormulaErrorKind, Parameter};
     use std::sync::Arc;
 
     fn bunny() -> (Arc<dyn Field>, Bounds) {

@@ -2,9 +2,10 @@
 
 use crate::creased::{Creased, cuboid, drilled_cube, prism, two_spheres};
 use glam::DVec3;
+use marching_particles::mesh::Topology;
 use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
-use marching_particles::{Bounds, Formula, Settings, Topology, sample};
+use marching_particles::{Bounds, Formula, Settings, sample};
 
 /// The mesh of a closed surface, held to what is promised: one closed manifold of this Euler number
 /// and about this area, with every segment of a crease as an edge between two patches.

@@ -2,9 +2,9 @@
 //! that ends.
 
 use glam::DVec3;
-use marching_particles::{
-    Bounds, Error, FnField, Formula, Run, Settings, StopReason, Topology, Warning, sample,
-};
+use marching_particles::field::FnField;
+use marching_particles::mesh::Topology;
+use marching_particles::{Bounds, Error, Formula, Run, Settings, StopReason, Warning, sample};
 
 fn formula(text: &str) -> Formula {
     Formula::parse(text).expect("a formula")

@@ -275,6 +275,24 @@ fn everything_that_is_published_has_one_version() {
 }
 
 #[test]
+fn the_root_of_the_library_is_small_and_the_front_page_names_all_of_it() {
+    let root = read("src/lib.rs");
+    let names: Vec<&str> = root
+        .split("\npub use ")
+        .skip(1)
+        .flat_map(|item| {
+            let (path, _) = item.split_once(';').expect("the end of a `use`");
+            let names = path.rsplit("::").next().expect("a name");
+            names.split(['{', '}', ',', '\n']).map(str::trim).filter(|name| !name.is_empty())
+        })
+        .collect();
+    let missing: Vec<_> =
+        names.iter().filter(|name| **name != "glam" && !root.contains(&format!("[`{name}`]"))).collect();
+    assert!(missing.is_empty(), "not in the table of src/lib.rs: {missing:?}");
+    assert!((30..=40).contains(&names.len()), "{} names at the root: {names:?}", names.len());
+}
+
+#[test]
 fn the_table_of_settings_is_that_of_the_settings() {
     check_table("docs/settings.md", "settings", &settings_table());
 }

@@ -1,9 +1,12 @@
 //! Tests of the door: what a program that uses the library meets.
 
+use marching_particles::field::{BatchField, FnField};
 use marching_particles::glam::DVec3;
+use marching_particles::run::{BoxError, Measured, Severity};
+use marching_particles::sampler::SettingsError;
 use marching_particles::{
-    BatchField, Bounds, BoxError, Error, Field, FnField, Format, Formula, Measured, MeshFormat, Method,
-    Particles, Radius, Run, Settings, SettingsError, Severity, Spacing, StopReason, Warning, sample,
+    Bounds, Error, Field, Format, Formula, MeshFormat, Method, Particles, Radius, Run, Settings, Spacing,
+    StopReason, Warning, sample,
 };
 use serde_json::json;
 use std::cell::Cell;

@@ -6,9 +6,10 @@ use marching_particles::field::formula::Formula;
 use marching_particles::math::{Bounds, NONE};
 use marching_particles::mesh::half_edge::HalfEdges;
 use marching_particles::quality::figures::Coverage;
-use marching_particles::sampler::SizeMode;
+use marching_particles::run::{Cut, Measured};
+use marching_particles::sampler::{FollowError, Phase, SizeMode};
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Cut, FollowError, Measured, Method, Phase, Run, Sampling, Settings, Warning};
+use marching_particles::{Method, Run, Sampling, Settings, Warning};
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
 const ELLIPSOID: &str = "x^2/q^2+y^2/0.49+z^2/0.25-1";

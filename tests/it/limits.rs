@@ -2,7 +2,8 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
-use marching_particles::{Bounds, Field, Formula, FormulaErrorKind, Sample, Settings, sample};
+use marching_particles::field::formula::FormulaErrorKind;
+use marching_particles::{Bounds, Field, Formula, Sample, Settings, sample};
 
 fn sampled(text: &str, settings: &Settings) -> Sample {
     sample(Formula::parse(text).expect("a formula"), settings).expect("a sample")

@@ -3,15 +3,15 @@
 
 use crate::runs::of_gallery;
 use glam::Vec3;
-use marching_particles::export::{MeshFile, MeshFormat, Placement, Unit, UpAxis, Vertices, write_mesh};
+use marching_particles::export::{
+    Bodies, MeshBuffers, MeshFile, MeshFormat, Placement, Unit, UpAxis, Vertices, write_mesh,
+};
 use marching_particles::field::gallery;
 use marching_particles::mesh::triangulation::{Triangulation, triangulate};
+use marching_particles::mesh::{Body, Inside, Topology};
 use marching_particles::particles::Particles;
-use marching_particles::quality;
 use marching_particles::sampler::Settings;
-use marching_particles::{
-    Bodies, Body, Formula, Inside, MeshBuffers, Sample, Topology, TriangleMesh, Warning, sample,
-};
+use marching_particles::{Formula, Sample, TriangleMesh, Warning, quality, sample};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;

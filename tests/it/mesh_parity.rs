@@ -7,8 +7,8 @@
 
 use crate::golden;
 use crate::runs::run;
-use marching_particles::MeshAnswer;
 use marching_particles::export::{MeshFormat, write_mesh};
+use marching_particles::run::MeshAnswer;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, FileRequest, Session};
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,8 @@
 use glam::DVec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
-use marching_particles::{Field, Method, Report, Run, Sample, Settings, Topology, extent};
+use marching_particles::mesh::Topology;
+use marching_particles::{Field, Method, Report, Run, Sample, Settings, extent};
 use std::collections::BTreeSet;
 
 const GYROID: &str = "sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)";

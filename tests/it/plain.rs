@@ -2,8 +2,9 @@
 
 use crate::cases;
 use crate::fuzz::below;
+use marching_particles::run::Severity;
 use marching_particles::sampler::Method;
-use marching_particles::{Bounds, Formula, Sample, Settings, Severity, Warning, sample};
+use marching_particles::{Bounds, Formula, Sample, Settings, Warning, sample};
 use rand_core::SeedableRng;
 use rand_pcg::Pcg32;
 use std::collections::{BTreeMap, BTreeSet};

@@ -2,18 +2,17 @@
 
 use core::f64::consts::PI;
 use glam::{DVec3, dvec3};
+use marching_particles::export::Vertices;
 use marching_particles::field::{Field, Frame};
-use marching_particles::remesh::MAX_TRIANGLES;
-use marching_particles::{
-    Formula, MeshEdges, MeshError, MeshField, MeshKind, MeshOptions, Sample, Search, Settings, TriangleMesh,
-    Vertices, difference, offset, sample,
-};
+use marching_particles::remesh::{MAX_TRIANGLES, MeshEdges, MeshError, MeshField, MeshKind, MeshOptions};
+use marching_particles::sampler::Search;
+use marching_particles::{Formula, Sample, Settings, TriangleMesh, difference, offset, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
 type Shape = (Vec<DVec3>, Vec<[u32; 3]>);
 
-fn solid_of((vertices, faces): &Shape) -> marching_particles::MeshSolid {
+fn solid_of((vertices, faces): &Shape) -> marching_particles::remesh::MeshSolid {
     let mesh = TriangleMesh::new(vertices.clone(), faces.clone()).expect("a mesh");
     mesh.solid().expect("a solid")
 }

@@ -2,7 +2,8 @@
 //! as where a fillet fades out.
 
 use glam::DVec3;
-use marching_particles::{Bounds, Field, Formula, Sample, Settings, Vertices, sample};
+use marching_particles::export::Vertices;
+use marching_particles::{Bounds, Field, Formula, Sample, Settings, sample};
 
 /// Places on each axis of the grid on which a volume is summed up.
 const SIDE: u32 = 100;

@@ -4,9 +4,10 @@ use marching_particles::field::BatchField;
 use marching_particles::field::formula::Parameter;
 use marching_particles::glam::DVec3;
 use marching_particles::math::Bounds;
+use marching_particles::run::Measured;
+use marching_particles::sample;
 use marching_particles::sampler::{GapPolicy, Method, Phase, Settings, SizeMode, StopReason};
 use marching_particles::session::{FaultKind, FieldRequest, Session, describe};
-use marching_particles::{Measured, sample};
 use std::sync::Arc;
 
 fn request(text: &str) -> FieldRequest {
@@ -565,7 +566,7 @@ fn a_surface_that_was_not_refined_is_warned_of() {
 
 mod solids {
     use super::{request, run, sized};
-    use marching_particles::Thickness;
+    use marching_particles::field::formula::Thickness;
     use marching_particles::math::Bounds;
     use marching_particles::sampler::{Settings, StopReason};
     use marching_particles::session::{

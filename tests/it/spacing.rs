@@ -2,10 +2,11 @@
 //! lets them. Wishes and distances are found by brute force, from other points of the surface than
 //! those of the sampler.
 
+use marching_particles::field::{BatchField, FnField};
 use marching_particles::glam::DVec3;
+use marching_particles::sampler::SettingsError;
 use marching_particles::{
-    BatchField, Bounds, Error, Field, FnField, Formula, Method, Run, Sample, Settings, SettingsError,
-    SizeMode, Spacing, Warning, sample,
+    Bounds, Error, Field, Formula, Method, Run, Sample, Settings, SizeMode, Spacing, Warning, sample,
 };
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;

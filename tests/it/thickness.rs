@@ -4,11 +4,10 @@ use crate::solids::{field, grid, is_consistent};
 use core::cmp::Ordering;
 use glam::DVec3;
 use marching_particles::field::Piecewise;
+use marching_particles::field::formula::{FormulaErrorKind, PorosityError, Thickness};
 use marching_particles::session::{FaultKind, FieldRequest, Session, SolidSettings};
 use marching_particles::slices::complete;
-use marching_particles::{
-    Bounds, Field, Formula, FormulaErrorKind, PorosityError, Sample, Settings, Thickness, gallery, sample,
-};
+use marching_particles::{Bounds, Field, Formula, Sample, Settings, gallery, sample};
 
 fn gyroid() -> Formula {
     gallery::find("gyroid").expect("the gallery has a gyroid").field()

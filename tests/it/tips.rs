@@ -6,8 +6,8 @@ use glam::Vec3;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::triangulation::triangulate;
-use marching_particles::sampler::{Method, Sampling, Settings};
-use marching_particles::{Formula, Refusal, Warning, sample};
+use marching_particles::sampler::{Method, Refusal, Sampling, Settings};
+use marching_particles::{Formula, Warning, sample};
 
 /// A surface with its tips and its topology in a cube, whose nappes are sheets of their own.
 struct Tipped {

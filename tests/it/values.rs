@@ -1,10 +1,10 @@
 //! Values at the particles: curvatures of surfaces whose curvatures are known, areas that add up,
 //! and what files hold.
 
+use marching_particles::field::BatchField;
 use marching_particles::glam::DVec3;
-use marching_particles::{
-    BatchField, Format, Formula, MeshFormat, Sample, Settings, Value, ValueError, sample,
-};
+use marching_particles::run::{Value, ValueError};
+use marching_particles::{Format, Formula, MeshFormat, Sample, Settings, sample};
 
 const TORUS: &str = "(hypot(x, y) - 1)^2 + z^2 = 0.16";
 

@@ -101,7 +101,8 @@ fn programs() -> Vec<(Program, &'static str)> {
             let particles = sample(sphere, &Settings::default().spaced(spacing))?;
         },
         program! { particles:
-            use marching_particles::{Formula, Settings, Value, sample};
+            use marching_particles::run::Value;
+            use marching_particles::{Formula, Settings, sample};
 
             let torus = Formula::parse("(sqrt(x^2 + y^2) - 1)^2 + z^2 = 0.16")?;
             let mut particles = sample(&torus, &Settings::with_count(3_000))?;
@@ -136,7 +137,8 @@ fn programs() -> Vec<(Program, &'static str)> {
             let particles = sample(image.at(100.0)?, &Settings::with_count(3_000))?;
         },
         program! { particles:
-            use marching_particles::{MeshOptions, Settings, TriangleMesh, sample};
+            use marching_particles::remesh::MeshOptions;
+            use marching_particles::{Settings, TriangleMesh, sample};
 
             let solid = TriangleMesh::read("part.stl", std::fs::read("part.stl")?)?.solid()?;
             let field = solid.field(&MeshOptions::default())?;

@@ -12,7 +12,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 /// [`Expr::call`] calls any function of the language.
 ///
 /// ```
-/// use marching_particles::{Expr, Formula, Settings, sample};
+/// use marching_particles::field::formula::Expr;
+/// use marching_particles::{Formula, Settings, sample};
 ///
 /// let [x, y, z] = Expr::axes();
 /// let tower = (x.powi(4) + y.powi(4)).sqrt() - 1.0;

@@ -88,12 +88,18 @@ mod thickness;
 mod token;
 mod wrapped;
 
+#[doc(hidden)]
 pub use ast::{FUNCTIONS, FunctionInfo};
 pub use builder::Expr;
+#[doc(hidden)]
 pub use control::Grip;
-pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
+#[doc(hidden)]
+pub use error::utf16_offset;
+pub use error::{FormulaError, FormulaErrorKind, Mended};
 pub(crate) use expression::Noun;
+#[doc(hidden)]
 pub use lex::name_pattern;
+#[doc(hidden)]
 pub use mathml::{MathGroup, MathNode, MathToken};
 #[doc(hidden)]
 pub use operand::MODEL;
@@ -180,7 +186,7 @@ impl Parameter {
 ///
 /// let error = Formula::parse("x^2 + sin y z").unwrap_err();
 /// assert_eq!((error.span.clone(), error.suggestion.as_deref()), (6..11, Some("sin(y)")));
-/// # Ok::<(), marching_particles::FormulaError>(())
+/// # Ok::<(), marching_particles::field::formula::FormulaError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Formula {

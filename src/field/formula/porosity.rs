@@ -50,7 +50,8 @@ impl Formula {
     /// [mesh](crate::Sample::volume) depends on the size of its triangles, too.
     ///
     /// ```
-    /// use marching_particles::{Bounds, Formula, Thickness};
+    /// use marching_particles::field::formula::Thickness;
+    /// use marching_particles::{Bounds, Formula};
     ///
     /// let bounds = Bounds::cube(1.0);
     /// let plate = Formula::parse("z = 0")?.with_porosity(0.7, &bounds)?;

@@ -9,14 +9,16 @@ use marching_particles::field::formula::number;
 use marching_particles::field::model::SolvedModel;
 use marching_particles::field::rbf::RbfData;
 use marching_particles::field::{BatchField, BatchPiecewise, Field};
+use marching_particles::image::{Section, VoxelType};
 use marching_particles::particles::Particles;
-use marching_particles::sampler::{Sampling, Spacing};
+use marching_particles::run::Value;
+use marching_particles::sampler::Sampling;
 use marching_particles::session::{
     Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, ImageFacts, ImagePromise, Language,
     Lengths, OpenedMesh, Session, SolidSettings, SpacingText, describe,
 };
 use marching_particles::slices::Estimated;
-use marching_particles::{Image, Section, TriangleMesh, Value, VoxelType};
+use marching_particles::{Image, Spacing, TriangleMesh};
 use marching_particles_values::{answer, read, to_js};
 use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;

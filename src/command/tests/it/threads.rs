@@ -42,7 +42,7 @@ fn unmeasured() -> Sample {
     let sphere = Formula::parse("x^2 + y^2 + z^2 = 1").expect("a formula");
     let mut run = Run::start(sphere, &Settings::with_count(20_000)).expect("a run");
     while run.step(u32::MAX).stop_reason.is_none() {}
-    run.finish_with(marching_particles::Measured::Nothing).expect("particles")
+    run.finish_with(marching_particles::run::Measured::Nothing).expect("particles")
 }
 
 #[test]
