@@ -8,7 +8,7 @@
 import { FATE, MOST_SLOTS, NO_PARENT, SLOT_BITS } from './core-numbers.js';
 import { vec } from './vector.js';
 
-/** @import { Bounds, ColumnRange, Figures, FileRecord, Mesh } from './types.js' */
+/** @import { Bounds, ColumnRange, Figures, FileRecord, Mesh, Pattern } from './types.js' */
 
 /** Number of fates that a slot can have. */
 export const FATES = 1 << SLOT_BITS;
@@ -57,6 +57,8 @@ export class Columns {
     this.stale = false;
     /** Whether the run was adaptive. The number of slots of a particle depends on it. */
     this.adaptive = false;
+    /** @type {Pattern} */
+    this.pattern = 'hexagonal';
     /** Whether the surface continues outside the clip box, according to the slots known so far. */
     this.isOpen = false;
     this.positions = new Float32Array(0);
@@ -112,8 +114,8 @@ export class Columns {
     this.record = null;
   }
 
-  /** Removes all particles, for a new run. @param {boolean} [adaptive] */
-  clear(adaptive = false) {
+  /** Removes all particles, for a new run. @param {boolean} [adaptive] @param {Pattern} [pattern] */
+  clear(adaptive = false, pattern = 'hexagonal') {
     this.count = 0;
     this.particles = 0;
     this.twins = new Uint32Array(0);
@@ -124,6 +126,7 @@ export class Columns {
     this.stale = false;
     this.curved = 0;
     this.adaptive = adaptive;
+    this.pattern = pattern;
     this.isOpen = false;
     this.past = [];
     this.exact = new Float64Array(0);

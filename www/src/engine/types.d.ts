@@ -108,6 +108,8 @@ export interface ColumnRange {
 export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };
 /** By the settings' names; a missing one has its default. */
 export type Settings = Record<string, number | string>;
+/** How particles lie to each other: in hexagons, or drawn over a front. */
+export type Pattern = 'hexagonal' | 'blue' | 'random';
 /**
  * The progress of a run as the worker tells it. `phase` has three more values than in the core: in
  * `making` the field is made of a file, in `mesh` the particles are joined, in `quality` they are measured.
@@ -415,9 +417,9 @@ export interface EngineCommands {
   run: () => void;
   /** stops the run and keeps the partial result */
   stop: () => void;
-  /** starts a run without relaxation */
+  /** starts a run without relaxation; does nothing if a pattern is chosen that is not relaxed */
   generateOnly: () => void;
-  /** relaxes the present particles by that many steps */
+  /** relaxes the present particles by that many steps, unless their pattern is not relaxed */
   relax: (steps: number) => void;
   setView: (patch: Partial<ViewState>) => void;
   fit: () => void;

@@ -136,7 +136,8 @@ function placeExplanation(element, anchor, side) {
  * @param {E} target hovered or focused
  * @param {() => Explanation | null} read
  * @param {{ tap?: boolean, side?: Side, focus?: boolean }} [options] with `tap`, a press toggles it (for elements that
- *   do nothing else); without `focus` it is there for the pointer alone, where Escape has another use
+ *   do nothing else; a press on an unavailable one always shows it); without `focus` it is there for the pointer alone,
+ *   where Escape has another use
  */
 export function explain(target, read, options = {}) {
   const open = () => {
@@ -155,6 +156,10 @@ export function explain(target, read, options = {}) {
     if (usesKeyboard() && options.focus !== false) later(open, 0);
   });
   target.addEventListener('focusout', hide);
-  if (options.tap) target.addEventListener('click', () => (owner === target ? hide() : open()));
+  target.addEventListener('click', () => {
+    if (options.tap) return owner === target ? hide() : open();
+    // A press on what is unavailable does nothing else than say why.
+    if (target.getAttribute('aria-disabled') === 'true') open();
+  });
   return target;
 }

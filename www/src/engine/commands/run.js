@@ -3,6 +3,7 @@
  *
  * @module
  */
+import { patternOf, unrelaxed } from '../patterns.js';
 import { completeSettings } from '../share/state.js';
 import { changeView, description, showAll } from '../store.js';
 
@@ -52,11 +53,12 @@ export function runCommands({ store, columns, scheduler, picture: { viewer } }) 
     },
     stop: () => scheduler.stop(),
     generateOnly() {
+      if (unrelaxed(patternOf(store.state.value.settings))) return;
       const settings = { ...completeSettings(description(store), store.state.value.settings), relax_steps: 0 };
       scheduler.resample({ kind: 'grow', settings });
     },
     relax(steps) {
-      if (steps > 0) scheduler.sampling.relax(Math.min(MOST_STEPS, Math.round(steps)));
+      if (steps > 0 && !unrelaxed(columns.pattern)) scheduler.sampling.relax(Math.min(MOST_STEPS, Math.round(steps)));
     },
   };
 }

@@ -5,6 +5,7 @@
  */
 import { batch } from '@preact/signals-core';
 import { MOST_STEPPED } from '../constants.js';
+import { patternOf } from '../patterns.js';
 import { change, idleProgress } from '../store.js';
 import { timingOf } from './cost.js';
 import { refusalNotice } from './faults.js';
@@ -125,7 +126,7 @@ export class Presenter {
     store.change.value = null;
     if (request.kind === 'relax') return;
     const { grows = false, fits = false, isLive = false } = KINDS[request.kind];
-    this.columns.clear(request.settings.sampling === 'adaptive');
+    this.columns.clear(request.settings.sampling === 'adaptive', patternOf(request.settings));
     this.columns.stale = request.kind === 'backdrop';
     // The new particles replace those that followed the surface there.
     this.picture.begin({ grow: grows, fit: fits, bounds, meets: this.#followed && !isLive });

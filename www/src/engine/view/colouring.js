@@ -225,11 +225,25 @@ const ramp = (legend, span, valuesIn, scale = (value) => value) => ({
   }),
 });
 
+/** Labels where a pattern has no levels, and no slots. */
+const UNRANKED = 'independent points: no levels';
+const SLOTLESS = 'points of a pattern: no slots';
+
 /** Where the rings begin. Pinned particles without a curve are at tips. @param {Columns} columns */
-const unitOfLevels = ({ curves, twins }) => {
+const unitOfLevels = ({ curves, twins, pattern }) => {
+  if (pattern === 'blue') return 'rounds of darts';
   if (curves.length > 0) return `rings from the ${curves.join(' and ')}`;
   return twins.length > 0 ? 'rings from the tips' : 'rings around the seed';
 };
+
+const BY_SLOTS = classes(
+  'Slots',
+  FATE_LABELS,
+  ({ fate }) => fate,
+  ({ slots, adaptive }) =>
+    (i) =>
+      classOfSlots(slots[i], adaptive),
+);
 
 /** @type {Record<ColourMode, Colouring>} */
 export const COLOURINGS = {
@@ -241,22 +255,23 @@ export const COLOURINGS = {
       const colours = palette.levels(last, twins.length > 0);
       return (i) => colours[Math.min(levels[i], last)];
     },
-    legend: ({ palette, columns }) => ({
-      title: 'Generation level',
-      unit: unitOfLevels(columns),
-      kind: 'sequential',
-      range: [0, columns.lastLevel],
-      colours: hexes(palette.levels(columns.lastLevel, columns.twins.length > 0)),
-    }),
+    legend({ palette, columns }) {
+      const colours = hexes(palette.levels(columns.lastLevel, columns.twins.length > 0));
+      const title = 'Generation level';
+      if (columns.pattern === 'random')
+        return { title, kind: 'categories', entries: [{ label: UNRANKED, colour: colours[0] }], colours };
+      return { title, unit: unitOfLevels(columns), kind: 'sequential', range: [0, columns.lastLevel], colours };
+    },
   },
-  fate: classes(
-    'Slots',
-    FATE_LABELS,
-    ({ fate }) => fate,
-    ({ slots, adaptive }) =>
-      (i) =>
-        classOfSlots(slots[i], adaptive),
-  ),
+  fate: {
+    colour: (context) =>
+      context.columns.pattern === 'hexagonal' ? BY_SLOTS.colour(context) : () => context.palette.plain,
+    legend(context) {
+      if (context.columns.pattern === 'hexagonal') return BY_SLOTS.legend(context);
+      const { palette } = context;
+      return byEntries('Slots', palette, [{ label: SLOTLESS, colour: hexFromPacked(palette.plain) }]);
+    },
+  },
   valence: classes(
     'Neighbours',
     VALENCE_LABELS,

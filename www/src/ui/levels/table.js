@@ -4,12 +4,15 @@ import { FATE } from '../../engine/core-numbers.js';
 import { formatCount, plural } from '../format.js';
 
 /**
- * @import { Columns } from '../../engine/types.js'
+ * @import { Columns, Pattern } from '../../engine/types.js'
  * @import { LevelTable } from './types.js'
  */
 
-/** @param {Pick<Columns, 'count' | 'tally' | 'adaptive' | 'lastLevel' | 'curves'>} particles @returns {LevelTable} */
-export function levelTable({ count, tally, adaptive, lastLevel: last, curves }) {
+/**
+ * @param {Pick<Columns, 'count' | 'tally' | 'adaptive' | 'pattern' | 'lastLevel' | 'curves'>} particles
+ * @returns {LevelTable}
+ */
+export function levelTable({ count, tally, adaptive, pattern, lastLevel: last, curves }) {
   // Without particles there are no numbers.
   const fresh = new Uint32Array(last + 1);
   fresh.set(tally.fresh.subarray(0, last + 1));
@@ -17,7 +20,7 @@ export function levelTable({ count, tally, adaptive, lastLevel: last, curves }) 
   seeds.set(tally.seeds.subarray(0, last + 1));
   const total = new Uint32Array(last + 1);
   for (let k = 0, sum = 0; k <= last; k += 1) total[k] = sum += fresh[k];
-  return { count, last, fresh, total, seeds, fates: tally.fates.slice(), adaptive, curves };
+  return { count, last, fresh, total, seeds, fates: tally.fates.slice(), adaptive, pattern, curves };
 }
 
 /** Fates of children that were not added, in the order of the description. */
@@ -42,11 +45,20 @@ export function flatCount({ adaptive, seeds }, level) {
 }
 
 /** Returns the short text of a level for the slider. @param {LevelTable} table @param {number} level */
-export const shortOf = ({ last, fresh, total }, level) =>
-  `${levelOf(level, last)}: ${plural(fresh[level], 'particle')}, ${formatCount(total[level])} so far`;
+export const shortOf = ({ last, fresh, total, pattern }, level) =>
+  `${levelOf(level, last, pattern)}: ${plural(fresh[level], 'particle')}, ${formatCount(total[level])} so far`;
 
-/** @param {number} level @param {number} last */
-const levelOf = (level, last) => `Level ${formatCount(level)} of ${formatCount(last)}`;
+/** @param {number} level @param {number} last @param {Pattern} pattern */
+const levelOf = (level, last, pattern) =>
+  `${pattern === 'hexagonal' ? 'Level' : 'Round'} ${formatCount(level)} of ${formatCount(last)}`;
+
+/** How the points of a pattern came about. @param {Pattern} pattern @param {number} level */
+const drawnOf = (pattern, level) => {
+  if (pattern === 'random') return 'Points drawn one by one, each independent of the others. There are no levels.';
+  return level === 0
+    ? 'Darts thrown at the surface in random order. One that is too near an earlier one is dropped.'
+    : 'Darts into the places that are still free, in random order.';
+};
 
 /**
  * Describes a level: its particles, and the fates of the proposed children.
@@ -54,11 +66,12 @@ const levelOf = (level, last) => `Level ${formatCount(level)} of ${formatCount(l
  * @param {number | null} relaxSteps  number of relaxation steps since; null if it is drawn as placed, before them
  */
 export function describeLevel(table, level, relaxSteps) {
-  const { last, fresh, total, seeds, fates, curves } = table;
+  const { last, fresh, total, seeds, fates, curves, pattern } = table;
   const flat = flatCount(table, level);
   const plane = flat === null ? '' : ` (on a flat plane ${formatCount(flat)})`;
   const counts = `${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
-  const title = `${levelOf(level, last)} · ${counts}`;
+  const title = `${levelOf(level, last, pattern)} · ${counts}`;
+  if (pattern !== 'hexagonal') return { title, text: drawnOf(pattern, level) };
   const moved =
     relaxSteps === null
       ? ' Drawn as placed, before relaxation.'

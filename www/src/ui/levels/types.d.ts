@@ -1,6 +1,7 @@
 // Types of the timeline, its levels and its charts.
 
 import type { Signal } from '@preact/signals-core';
+import type { Pattern } from '../../engine/types.js';
 import type { Drawn } from '../types.js';
 import type { createLevels } from './levels.js';
 import type { createTimeline } from './timeline.js';
@@ -28,6 +29,8 @@ export interface LevelTable {
   seeds: Uint32Array;
   fates: Uint32Array;
   adaptive: boolean;
+  /** in a pattern that is drawn, levels are rounds, without children */
+  pattern: Pattern;
   /** the kinds of curves from which the fronts start, where patches meet */
   curves: string[];
 }

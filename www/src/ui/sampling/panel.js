@@ -1,5 +1,6 @@
 /** The sampling panel: the kind of sampling, the actions, the progress, and the settings that the core describes. */
 import { computed, signal } from '@preact/signals-core';
+import { patternOf, unrelaxed } from '../../engine/patterns.js';
 import { button } from '../button.js';
 import { fill, h, once, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
@@ -44,8 +45,14 @@ function createActions(engine) {
   const { busy, loading, progress } = engine;
   const due = isDue(engine);
   const idle = () => !busy.value && loading.value === null;
-  const fixed = () => busy.value || progress.value.particles === 0;
-  /** @type {[string, string, ButtonProps][]} */
+  /** Why the present particles, and those of the next run, are not relaxed; empty if they can be. */
+  const pinned = computed(() => {
+    void engine.revision.value;
+    return unrelaxed(engine.columns.pattern);
+  });
+  const stiff = computed(() => unrelaxed(patternOf(engine.state.value.settings)));
+  const fixed = () => busy.value || progress.value.particles === 0 || pinned.value !== '';
+  /** @type {[string, string | (() => string), ButtonProps][]} */
   const actions = [
     [
       'Run',
@@ -59,12 +66,12 @@ function createActions(engine) {
     ],
     [
       'Without relaxing',
-      'Places the particles level by level and leaves them unrelaxed. Key G.',
-      { press: () => engine.generateOnly() },
+      () => stiff.value || 'Places the particles level by level and leaves them unrelaxed. Key G.',
+      { off: () => stiff.value !== '', press: () => engine.generateOnly() },
     ],
     [
       'Relax one step',
-      'Moves the present particles one relaxation step further. Key E.',
+      () => pinned.value || 'Moves the present particles one relaxation step further. Key E.',
       { off: fixed, press: () => engine.relax(1) },
     ],
   ];
@@ -72,7 +79,11 @@ function createActions(engine) {
     'div',
     { class: 'actions', role: 'group', 'aria-label': 'Run' },
     actions.map(([label, text, { press = () => {}, ...props }]) =>
-      explain(button({ ...props, press: once(press) }, label), () => ({ text }), { side: 'above' }),
+      explain(
+        button({ ...props, press: once(press) }, label),
+        () => ({ text: text instanceof Function ? text() : text }),
+        { side: 'above' },
+      ),
     ),
   );
 }

@@ -69,6 +69,31 @@ test('the settings', async ({ page }) => {
     expect((await state(page)).settings).toEqual({ radius_share, sampling: 'adaptive' });
   });
 
+  await test.step('what a pattern cannot have is unavailable, and says why', async () => {
+    await afresh(page, { width: 1440, height: 900, hash: link({ settings: { pattern: 'blue', radius_share: 0.03 } }) });
+    const before = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.progress.value.run);
+    for (const [name, key] of [
+      ['Without relaxing', 'g'],
+      ['Relax one step', 'e'],
+    ]) {
+      const action = page.getByRole('button', { name });
+      await expect(action).toHaveAttribute('aria-disabled', 'true');
+      // Playwright waits for a button that is enabled, unless it is forced.
+      await action.click({ force: true });
+      await expect(page.locator('#explain')).toContainText('Blue noise is not relaxed');
+      await page.locator('.canvas-host').focus();
+      await page.keyboard.press(key);
+    }
+    expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.progress.value.run)).toBe(
+      before,
+    );
+    await expect(page.locator('.legend .ends')).toContainText('rounds of darts');
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setSetting('pattern', 'hexagonal'));
+    await settled(page);
+    await expect(page.getByRole('button', { name: 'Relax one step' })).toHaveAttribute('aria-disabled', 'false');
+    await expect(page.locator('.legend .ends')).toContainText('rings around the seed');
+  });
+
   await test.step('what few need is behind a button that says how much of it was changed', async () => {
     await afresh(page, { width: 1440, height: 900 });
     const more = page.getByRole('button', { name: 'Advanced' });

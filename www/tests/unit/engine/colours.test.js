@@ -208,6 +208,24 @@ describe('colours of particles', () => {
     expect(unit()).toBe('rings around the seed');
   });
 
+  test('by level are rounds of blue noise, and none where points are independent; neither has slots', () => {
+    const drawn = (/** @type {any} */ pattern) => Object.assign(Object.create(columns), { pattern });
+    expect(legendOf('level', 'light', drawn('blue'))).toMatchObject({ range: [0, 13], unit: 'rounds of darts' });
+    expect(legendOf('level', 'light', drawn('random'))).toMatchObject({
+      kind: 'categories',
+      unit: '',
+      entries: [{ label: 'independent points: no levels' }],
+      pending: false,
+    });
+    for (const pattern of ['blue', 'random']) {
+      expect(legendOf('fate', 'light', drawn(pattern))).toMatchObject({
+        entries: [{ label: 'points of a pattern: no slots' }],
+        pending: false,
+      });
+      expect(new Set(coloursOf('fate', 'light', drawn(pattern), 0, 3)).size).toBe(1);
+    }
+  });
+
   test('by level use the last colour for levels that are newer than the range', () => {
     const table = PALETTES.dark.levels(1);
     expect([...coloursOf('level', 'dark', columns, 0, 3, [0, 1])]).toEqual([table[0], table[1], table[1]]);

@@ -181,6 +181,17 @@ describe('a level in words', () => {
     );
   });
 
+  test('says that the levels of blue noise are rounds, and that random points have none', () => {
+    const drawn = (/** @type {any} */ pattern) => ({ ...levelTable(particles([{ level: 0 }, { level: 1 }])), pattern });
+    expect(describeLevel(drawn('blue'), 1, 0)).toEqual({
+      title: 'Round 1 of 1 · 1 new, 2 so far',
+      text: 'Darts into the places that are still free, in random order.',
+    });
+    expect(shortOf(drawn('blue'), 0)).toBe('Round 0 of 1: 1 particle, 1 so far');
+    expect(describeLevel(drawn('blue'), 0, 0).text).toMatch(/^Darts thrown/);
+    expect(describeLevel(drawn('random'), 0, 0).text).toMatch(/^Points drawn one by one/);
+  });
+
   test('compares with a plane only where that means something: one front, one size', () => {
     const made = /** @type {Made[]} */ ([{ level: 0 }, { level: 1, parent: 0 }, { level: 2, parent: 1 }]);
     expect(flatCount(levelTable(particles(made)), 2)).toBe(12);
