@@ -133,7 +133,7 @@ fn refusal(error: &SettingsError) -> String {
     let setting = settings().into_iter().find(|setting| setting.name == *name);
     let option = match setting {
         Some(setting) => setting.option(),
-        // Of the other method's settings only two have an option.
+        // Only two settings of the Witkin–Heckbert system have an option.
         None => name.trim_start_matches("max_").replace('_', "-"),
     };
     if setting.is_some_and(|setting| setting.is_share()) {

@@ -85,7 +85,7 @@ fn names() -> impl Iterator<Item = &'static str> {
     surfaces.chain(model::MODELS.iter().map(|model| model.id))
 }
 
-/// What a surface is made from that is no formula.
+/// The source of a surface.
 #[derive(Clone, Debug)]
 pub(crate) enum Origin {
     Formula,

@@ -121,7 +121,7 @@ struct Counted {
     before: u32,
     /// The next unused identity.
     next: u32,
-    /// The frames in which runs begin, and why the earlier particles could not follow.
+    /// The frames that were sampled anew, and why the particles before could not follow.
     anew: Vec<(u32, FollowError)>,
     /// Frames without particles.
     empty: u32,

@@ -29,8 +29,8 @@ use serde::Serialize;
 /// before. An endless surface gets the smallest of them as its box, so that another choice gives it
 /// another box.
 pub(crate) const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
-/// Half-width of the box of an endless surface that passes near the origin: that of the smallest
-/// cube that is searched. A gyroid has one and a quarter periods in it.
+/// Half-width of the box of an endless surface that passes near the origin: the smallest cube that
+/// is searched. A gyroid has one and a quarter periods in it.
 const USUAL_HALF: f64 = HALVES[HALVES.len() - 1];
 /// A surface with a shorter period gets a box of two periods instead: [`USUAL_HALF`] would show
 /// more than four.

@@ -53,8 +53,8 @@ const HALVINGS: u32 = 30;
 const OUTER: f64 = 0.25;
 /// Cells that are examined for that at each side, the outermost first.
 const MOST_OUTER: usize = 64;
-/// A box of bends that shrinks below this share of itself when the cells are halved is that of the
-/// cells, not of the bends.
+/// If a box around the bends shrinks below this share of itself when the cells are halved, its size
+/// came from the cells, not from the bends.
 const STEADY: f64 = 0.75;
 /// The box that holds nothing.
 const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -199,7 +199,7 @@ async fn bends(
     effort: Effort,
     left: &mut usize,
 ) -> Option<Bounds> {
-    // A box that is fine enough, until the next level shows whether it is that of the bends.
+    // A box that is fine enough; the next level shows whether it is [`STEADY`].
     let mut fine: Option<Bounds> = None;
     loop {
         kept.retain(|cell| cell.extremes != [false; 3]);

@@ -58,7 +58,7 @@ impl StepLimits {
 }
 
 /// The point at which the steps from `start` come to rest within these limits, with the second
-/// value of `step_at` at the last step. None also if `step_at` returns none or a step that is NaN.
+/// value of `step_at` at the last step. None if they do not, or `step_at` returns none or NaN.
 pub(crate) fn land<T>(
     start: DVec3,
     limits: StepLimits,

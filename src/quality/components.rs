@@ -8,9 +8,9 @@ use crate::slices::{MEDIUM, pause};
 /// Returns the component of every point, in tree order, and the number of components. Component 0
 /// has the most points; ties are in the order of the points as given.
 ///
-/// Two points are on one component if a triangle joins them. So are natural neighbours of which one
-/// is in no triangle, if their distance is not [`LONG`] at either. `welded` are the triangles by
-/// vertices, which the patches share.
+/// Two points are on one component if a triangle joins them. If one of two natural neighbours is in
+/// no triangle, they are on one component unless their distance is [`LONG`] at either. `welded` are
+/// the triangles by vertices, which the patches share.
 pub(super) async fn label(
     points: &MeasuredPoints,
     spacing: &[f32],

@@ -95,8 +95,8 @@ impl CreaseRows {
         !self.is_empty() && self.particle[i] == self.particle[j]
     }
 
-    /// Squared distance to the nearest point of another particle than that of point `i`, and that
-    /// point or another row of its particle; infinite and [`NONE`] if there is none.
+    /// Squared distance from point `i` to the nearest other particle, and a row of that particle;
+    /// infinite and [`NONE`] if there is none.
     pub(super) fn nearest(&self, tree: &Tree, i: usize) -> (f32, u32) {
         if self.is_empty() {
             return tree.nearest(tree.position[i], i as u32, f32::INFINITY);
@@ -106,8 +106,8 @@ impl CreaseRows {
         keys.first().map_or((f32::INFINITY, NONE), |&key| unkey(key))
     }
 
-    /// Distance to the nearest point of another particle than that of point `i`, if the nearest one
-    /// on its own patch is at the distance `of_patch`.
+    /// Distance from point `i` to the nearest other particle, given the distance `of_patch` to the
+    /// nearest one on its own patch.
     pub(super) fn nearest_within(&self, tree: &Tree, i: usize, of_patch: f32) -> f32 {
         if self.is_empty() {
             return of_patch;

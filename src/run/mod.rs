@@ -48,9 +48,9 @@ use std::sync::Arc;
 /// Bytes of a particle that is kept after the front: its position, normal and radius.
 const KEPT_BYTES: usize = 12 + 12 + 4;
 /// Bytes per particle that a report takes while it is made, in WebAssembly, whose memory never
-/// shrinks: with the bytes kept and those of the sampler these are the 425 by which that of a front
-/// and its report grows from 100,000 to 400,000 particles of an ellipsoid. For a gyroid it is 433,
-/// with varying sizes 415, and refined 333; natively 378 are resident at the peak.
+/// shrinks. With the bytes kept and the sampler's it makes 425: the memory of a front with its
+/// report grows by as many bytes per particle from 100,000 to 400,000 particles of an ellipsoid. On
+/// a gyroid it grows by 433, with varying sizes by 415, refined by 333; natively the peak is 378.
 const REPORT_BYTES: usize = 302;
 
 /// Why there is no sample of a surface.

@@ -193,7 +193,7 @@ pub(super) struct Fitting {
     pub(super) is_settled: bool,
     /// Whether the present clip box was fitted.
     pub(super) is_fitted: bool,
-    /// Whether it is larger than the fitted one, because it contains the box before it.
+    /// Whether the clip box was enlarged to contain the box before it.
     pub(super) is_grown: bool,
 }
 

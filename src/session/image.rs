@@ -314,7 +314,7 @@ mod tests {
         sliced.set_image(&image, "ball", &wanted).expect("a field");
         whole.set_image(&image, "ball", &wanted).expect("a field");
         assert_eq!(digest(&mut sliced), digest(&mut whole));
-        // What has no surface is told when the field is set.
+        // An iso value without a surface is refused when the field is set, not while it is made.
         assert_eq!(sliced.make_image(&image, &request(&[("iso", 1e6)]), u32::MAX), 1.0);
         let fault = sliced.set_image(&image, "ball", &request(&[("iso", 1e6)])).expect_err("refused");
         assert_eq!(fault.kind, FaultKind::Image);

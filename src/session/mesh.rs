@@ -221,7 +221,7 @@ mod with_meshes {
     }
 
     impl MeshInfo {
-        /// The description of a field from a mesh of this name, of which the reader says `notes`.
+        /// The description of a field from a mesh of this name, with the reader's `notes`.
         pub fn new(name: &str, notes: &[String], field: &MeshField) -> Self {
             let solid = field.solid();
             let border = |MeshRim { edges, loops, is_smoothed, .. }| MeshBorder { edges, loops, is_smoothed };

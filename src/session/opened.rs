@@ -208,7 +208,7 @@ impl Session {
         }
     }
 
-    /// What is made of a file, begun if it is not under way.
+    /// The work on a field from a file: the one under way, or a new one if another is wanted.
     fn making(&mut self, wanted: Wanted) -> Making {
         match self.making.take().filter(|making| making.wanted.is_same(&wanted)) {
             Some(making) => *making,

@@ -126,9 +126,9 @@ impl Session {
         })
     }
 
-    /// The particles as a file of the format with this extension, with what was measured of them;
-    /// as `json` the record by itself. `json` gives the JSON of the record. None for another
-    /// extension, and for a record that there is not.
+    /// The particles and their figures as a file of the format with this extension, or the record
+    /// alone for `json`. `json` gives the text of the record. None if the extension is unknown or
+    /// there is no record.
     pub fn particle_file(
         &self,
         extension: &str,
