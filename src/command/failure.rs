@@ -133,8 +133,8 @@ fn refusal(error: &SettingsError) -> String {
     let setting = settings().into_iter().find(|setting| setting.name == *name);
     let option = match setting {
         Some(setting) => setting.option(),
-        // Only two settings of the Witkin–Heckbert system have an option.
-        None => name.trim_start_matches("max_").replace('_', "-"),
+        // A length that is not in the table of settings, such as `spacing_max`.
+        None => name.replace('_', "-"),
     };
     if setting.is_some_and(|setting| setting.is_share()) {
         let [value, min, max] = [*value, *min, *max].map(percent);
