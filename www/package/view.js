@@ -27,7 +27,7 @@ function faultOf(engine) {
   const fault = engine.fieldError.value;
   if (fault) return new FormulaError(fault.message, { ...fault, suggestion: fault.suggestion ?? null });
   const { message } = engine.progress.value;
-  if (engine.empty.value) return new NoSurfaceError(message ?? 'There is no surface in the box.');
+  if (engine.result.value === 'none') return new NoSurfaceError(message ?? 'There is no surface in the box.');
   const notice = engine.notice.value;
   return engine.debug.isOff() ? new WorkerError(notice?.text ?? 'The sampler did not start.') : null;
 }
@@ -41,10 +41,10 @@ function faultOf(engine) {
 const EVENTS = {
   progress(engine) {
     const { phase, particles, fraction } = engine.progress.value;
-    return engine.busy.value ? { phase, particles, fraction } : null;
+    return engine.status.value === 'sampling' ? { phase, particles, fraction } : null;
   },
-  report: (engine) => (engine.busy.value ? null : engine.report.value),
-  error: (engine, unread) => unread.value ?? (engine.busy.value ? null : faultOf(engine)),
+  report: (engine) => (engine.status.value === 'sampling' ? null : engine.report.value),
+  error: (engine, unread) => unread.value ?? (engine.status.value === 'sampling' ? null : faultOf(engine)),
 };
 
 /** Returns what has a promise rejected at the end of a view, which else would never settle, and what ends it. */

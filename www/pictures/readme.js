@@ -209,7 +209,7 @@ const followed = (page) =>
   page.evaluate(async () => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
     do await new Promise((go) => requestAnimationFrame(go));
-    while (engine.busy.value);
+    while (engine.status.value === 'sampling');
     await new Promise((go) => requestAnimationFrame(go));
   });
 

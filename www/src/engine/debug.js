@@ -16,7 +16,7 @@ export const CAMERA_MS = 120;
 const painterOf = ({ keeper: { device } }) => (device && 'work' in device.renderer ? device.renderer : null);
 
 /** @param {Parts} parts @returns {EngineDebug} */
-export function createDebug({ store, picture: { viewer }, scheduler: { sampling } }) {
+export function createDebug({ store, picture: { viewer }, sampler }) {
   return {
     loseDevice(reason = 'unknown') {
       const { device } = viewer.keeper;
@@ -25,7 +25,7 @@ export function createDebug({ store, picture: { viewer }, scheduler: { sampling 
     },
     stale(id) {
       const progress = /** @type {const} */ ({ phase: 'generation', particles: 123_456_789 });
-      sampling.receive({ type: 'progress', id, progress: { ...store.progress.value, ...progress } });
+      sampler.receive({ type: 'progress', id, progress: { ...store.progress.value, ...progress } });
     },
     still: () =>
       new Promise((resolve) => {
@@ -37,13 +37,13 @@ export function createDebug({ store, picture: { viewer }, scheduler: { sampling 
         // The check is deferred, because a signal can change during a frame, before that frame requests the next one.
         setTimeout(look);
       }),
-    isOff: () => sampling.client.isOff,
+    isOff: () => sampler.client.isOff,
     counts: () => ({
       frames: viewer.frames.drawn,
       uploads: viewer.upload.writes,
       opened: viewer.keeper.opened,
-      restarts: sampling.client.supervisor.restarts.length,
-      stale: sampling.stale,
+      restarts: sampler.client.restarts.length,
+      stale: sampler.stale,
       dimmed: viewer.dimmer.on,
       work: painterOf(viewer)?.work ?? 0,
     }),

@@ -62,6 +62,7 @@ export class Framing {
       }),
       effect(() => {
         const trial = store.trial.value;
+        if (trial === 'typing') return;
         if (trial === 'shown') before ??= viewer.camera.state;
         else {
           if (before && trial === 'back') this.#back(before);
@@ -70,8 +71,8 @@ export class Framing {
       }),
       effect(() => {
         // Without a surface the camera shows the box, and returns to the surface when one appears.
-        const none = store.empty.value && columns.count === 0;
-        const rests = !store.busy.value && !store.progress.value.live;
+        const none = store.result.value === 'none' && columns.count === 0;
+        const rests = store.status.value !== 'sampling' && !store.progress.value.live;
         if (!rests || none === boxShown) return;
         boxShown = none;
         queueMicrotask(() => this.#fit());
@@ -168,8 +169,9 @@ export class Framing {
    * difference: the surface shown may come from an earlier state of the same text.
    */
   #rests() {
-    const { busy, typing, report, empty } = this.#store;
-    return !typing.value && !busy.value && (report.value !== null || empty.value);
+    const { status, trial, report, result } = this.#store;
+    const isAtWork = trial.value === 'typing' || status.value === 'sampling';
+    return !isAtWork && (report.value !== null || result.value === 'none');
   }
 
   close() {

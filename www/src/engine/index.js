@@ -13,7 +13,9 @@ import { createDebug } from './debug.js';
 import { Framing } from './framing.js';
 import { keepLook } from './look.js';
 import { createPicture } from './picture.js';
-import { Scheduler } from './scheduler.js';
+import { ModelLoader } from './points/loader.js';
+import { Sampler } from './sampling/sampler.js';
+import { spawnSampler } from './sampling/spawn.js';
 import { surfaceOf } from './share/state.js';
 import { createStore } from './store.js';
 
@@ -21,6 +23,10 @@ import { createStore } from './store.js';
  * @import { Parts } from './parts.js'
  * @import { Engine, EngineOptions } from './types.js'
  */
+
+/** @returns {any} */
+const spawnSolver = () =>
+  new Worker(new URL('./points/worker.js', import.meta.url), { type: 'module', name: 'points' });
 
 /**
  * Creates an engine that draws in an element of the page and begins with a state. It knows nothing of the page's
@@ -33,10 +39,19 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
   const columns = new Columns();
   const picture = createPicture({ host, store, columns, first: backend });
   const { viewer } = picture;
-  const scheduler = new Scheduler({
+  const loader = new ModelLoader({
+    store,
+    spawn: spawnSolver,
+    sample: (kind) => sampler.resample({ kind }),
+    openGiven: (file, onProgress) => sampler.client.openFile(file, onProgress),
+    stopOpening: () => sampler.client.stopOpening(),
+  });
+  const sampler = new Sampler({
     store,
     columns,
     picture: viewer,
+    models: loader,
+    spawn: spawnSampler,
     onReady() {
       // A given state brings its own camera.
       viewer.opening = link === '' && Object.keys(state).length === 0;
@@ -44,7 +59,7 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
       fetchExports().catch(() => {});
     },
   });
-  const framing = new Framing({ store, columns, viewer, keep: () => scheduler.sampling.commit() });
+  const framing = new Framing({ store, columns, viewer, keep: () => sampler.commit() });
 
   /** @type {Parts['adopt']} */
   function adopt(whole) {
@@ -53,15 +68,15 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
     const { camera } = whole.view;
     viewer.camera.set(camera);
     store.state.value = whole;
-    if (camera.fit && scheduler.loader.ready()) viewer.fit(true);
+    if (camera.fit && loader.ready()) viewer.fit(true);
     // If the new surface cannot be sampled, the camera fits the old one.
     framing.written({ typed: false });
-    scheduler.choose(camera.fit ? 'new' : 'grow');
+    sampler.choose(camera.fit ? 'new' : 'grow');
   }
 
   /** @type {Parts} */
-  const parts = { store, columns, picture, scheduler, framing, adopt };
-  const closeLook = keepLook({ store, viewer, scheduler });
+  const parts = { store, columns, picture, sampler, loader, framing, adopt };
+  const closeLook = keepLook({ store, viewer, sampler, loader });
   /** @type {Engine} */
   const engine = {
     ...store,
@@ -77,16 +92,16 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
       const { model, image, mesh, formula, parameters, bounds } = field;
       if (image || mesh) return null;
       if (!model) return { formula, parameters, bounds };
-      const solved = scheduler.loader.client.get(scheduler.loader.key());
+      const solved = loader.client.get(loader.key());
       return solved ? { system: solved.field, pulls: store.state.value.pulls, bounds } : null;
     },
     debug: createDebug(parts),
     destroy() {
       closeLook();
-      for (const part of [framing, picture, scheduler]) part.close();
+      for (const part of [framing, picture, sampler]) part.close();
     },
   };
-  scheduler.sampling.start();
+  sampler.start();
   void viewer.start();
   return engine;
 }

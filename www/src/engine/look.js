@@ -8,16 +8,17 @@ import { isBareModel } from './pulls.js';
 import { seenOf } from './view/style.js';
 
 /**
- * @import { Scheduler } from './scheduler.js'
+ * @import { ModelLoader } from './points/loader.js'
+ * @import { Sampler } from './sampling/sampler.js'
  * @import { Store } from './store.js'
  * @import { Viewer } from './view/viewer.js'
  */
 
 /**
- * @param {{ store: Store, viewer: Viewer, scheduler: Scheduler }} parts
+ * @param {{ store: Store, viewer: Viewer, sampler: Sampler, loader: ModelLoader }} parts
  * @returns a function that ends it
  */
-export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
+export function keepLook({ store, viewer, sampler, loader }) {
   const system = matchMedia('(prefers-color-scheme: dark)');
   const isDark = signal(system.matches);
   const follow = () => {
@@ -28,7 +29,9 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
   // If the surface misses the box, the box is drawn so that it can be moved; if no surface exists anywhere, it is not.
   const isMissed = computed(
     () =>
-      store.empty.value && store.field.value?.reach !== 'nowhere' && store.progress.value.stop_reason !== 'constant',
+      store.result.value === 'none' &&
+      store.field.value?.reach !== 'nowhere' &&
+      store.progress.value.stop_reason !== 'constant',
   );
 
   /** Returns the points of the current model, or null if they are not drawn. */
@@ -36,7 +39,7 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
     const { view, pulls } = store.state.value;
     // The points belong to the surface before it is pulled, cut or joined.
     if (!view.points || !isBareModel(store.field.value) || pulls.length > 0) return null;
-    return loader.client.get(sampling.accepted?.field.points)?.centres ?? null;
+    return loader.client.get(sampler.accepted?.field.points)?.centres ?? null;
   }
 
   function look() {
@@ -60,16 +63,16 @@ export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
       if (field) viewer.setBounds(field.bounds);
     }),
     effect(() => {
-      viewer.grow(store.busy.value);
+      viewer.grow(store.status.value === 'sampling');
     }),
     effect(() => {
       const now = look();
       untracked(() => {
         store.theme.value = now.theme;
         viewer.set(now);
-        sampling.client.wish('curvature', now.colour === 'curvature');
-        sampling.client.wish('mesh', now.draw === 'mesh');
-        sampling.client.wishValue(now.colour === 'value' ? store.state.value.view.value : '');
+        sampler.client.wish('curvature', now.colour === 'curvature');
+        sampler.client.wish('mesh', now.draw === 'mesh');
+        sampler.client.wishValue(now.colour === 'value' ? store.state.value.view.value : '');
       });
     }),
     () => system.removeEventListener('change', follow),

@@ -30,8 +30,8 @@ export const once = (engine, isOver) =>
 export const atRest = (engine) =>
   engine.description.value !== null &&
   engine.loading.value === null &&
-  !engine.typing.value &&
-  !engine.busy.value &&
+  engine.trial.value !== 'typing' &&
+  engine.status.value === 'rest' &&
   engine.progress.value.phase === 'done';
 
 /**

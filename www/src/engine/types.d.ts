@@ -131,7 +131,7 @@ export type SampleKind =
   | 'again'
   | 'restore'
   | 'backdrop';
-export type RunKind = SampleKind | 'relax';
+export type JobKind = SampleKind | 'relax';
 export type Seconds = { seeding: number; generation: number; refinement: number; relaxation: number; quality: number };
 /** A report with what the worker measured. */
 export type Report = CoreReport & { seconds: Seconds };
@@ -291,7 +291,21 @@ export interface LoadingError {
   /** with the line number, if there is one */
   message: string;
 }
-export type Trial = 'none' | 'shown' | 'back';
+/**
+ * What is under way. `sampling`: a run, which can be stopped; `measuring`: its particles are on the page, and its
+ * report is pending.
+ */
+export type Status = 'rest' | 'sampling' | 'measuring';
+/**
+ * What the last run has made. `partial`: it was stopped or capped; `none`: it found no surface; null: no run has ended,
+ * or the next one has found a surface.
+ */
+export type Result = 'whole' | 'partial' | 'none' | null;
+/**
+ * What has become of a formula that is still being typed. `typing`: it waits for a pause before it is sampled; `shown`:
+ * the surface is its own; `back`: it gave way to the one before.
+ */
+export type Trial = 'none' | 'typing' | 'shown' | 'back';
 export interface EngineSignals {
   state: ReadonlySignal<State>;
   /** null until the core has loaded */
@@ -324,18 +338,11 @@ export interface EngineSignals {
   columns: Columns;
   /** null while nothing is being revealed */
   reveal: ReadonlySignal<Reveal | null>;
-  /** whether a run is active and can be stopped */
-  busy: ReadonlySignal<boolean>;
-  /** whether a typed formula waits for a pause before it is sampled */
-  typing: ReadonlySignal<boolean>;
-  /** `shown`: the surface is that of a formula that is still being typed; `back`: it gave way to the one before */
+  status: ReadonlySignal<Status>;
+  result: ReadonlySignal<Result>;
   trial: ReadonlySignal<Trial>;
   /** whether a control is being dragged, also while it rests */
   dragging: ReadonlySignal<boolean>;
-  /** whether the picture shows a run that was stopped or capped */
-  partial: ReadonlySignal<boolean>;
-  /** whether the last run found no surface */
-  empty: ReadonlySignal<boolean>;
   lastDrag: ReadonlySignal<LastDrag | null>;
   /** increases when the page turns the camera to show another surface, as no hand does */
   turned: ReadonlySignal<number>;

@@ -53,10 +53,11 @@ export function keepAddress(engine, { hasEntries }) {
     const link = await engine.link();
     // The state before Back must not be written into the entry that Back leads to.
     if (reading > 0) return;
-    const { trial, typing, fieldError, state } = engine;
+    const { trial, fieldError, state } = engine;
     const name = nameOf(state.value);
     const isNext = hasEntries && entry !== null && entry !== name;
-    if (trial.value !== 'shown' && !typing.value && fieldError.value === null) entry = name;
+    const isTried = trial.value === 'shown' || trial.value === 'typing';
+    if (!isTried && fieldError.value === null) entry = name;
     else if (isNext) entry = null;
     if (link === own) return;
     own = link;
@@ -64,7 +65,7 @@ export function keepAddress(engine, { hasEntries }) {
   }
   effect(() => {
     // Reading the whole state makes the effect run after any change of it, and after a typed formula has settled.
-    void [engine.state.value, engine.trial.value, engine.typing.value, engine.fieldError.value];
+    void [engine.state.value, engine.trial.value, engine.fieldError.value];
     // The first surface is that of the opening entry, even if another is chosen before the first write.
     if (!isOpen && engine.description.value && engine.state.value.surface !== '') {
       isOpen = true;

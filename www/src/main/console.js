@@ -37,10 +37,10 @@ function copyOf(columns) {
 const statusOf = (engine) => ({
   backend: engine.backend.value,
   adapter: engine.adapter.value,
-  busy: engine.busy.value,
+  busy: engine.status.value === 'sampling',
   progress: { ...engine.progress.value },
-  partial: engine.partial.value,
-  empty: engine.empty.value,
+  partial: engine.result.value === 'partial',
+  empty: engine.result.value === 'none',
   dimmed: engine.debug.counts().dimmed,
   fieldError: engine.fieldError.value,
   loading: engine.loading.value,

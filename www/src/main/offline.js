@@ -19,7 +19,7 @@ const ASK_MS = 3_600_000;
 /** @param {Engine} engine @param {Toast} toast */
 export function keepOffline(engine, toast) {
   const stop = effect(() => {
-    if (engine.busy.value || (engine.report.value === null && !engine.empty.value)) return;
+    if (engine.status.value === 'sampling' || (engine.report.value === null && engine.result.value !== 'none')) return;
     queueMicrotask(() => stop());
     storeSite('./service-worker.js', (registration, isFirst) => follow(registration, isFirst, toast));
   });

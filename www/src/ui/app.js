@@ -67,7 +67,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
         motion.playing.value !== null ||
         motion.turning.value ||
         motion.filming.value ||
-        engine.typing.value ||
+        engine.trial.value === 'typing' ||
         engine.dragging.value,
     ),
   );
@@ -243,7 +243,8 @@ function pictureOf(engine, motion, toast) {
  */
 function stopByEscape(engine, motion) {
   const stop = (/** @type {KeyboardEvent} */ event) => {
-    if (event.key !== 'Escape' || event.isComposing || !(engine.busy.peek() || engine.loading.peek())) return;
+    if (event.key !== 'Escape' || event.isComposing || !(engine.status.peek() === 'sampling' || engine.loading.peek()))
+      return;
     // Escape then cancels the drag.
     if (engine.dragging.peek()) return;
     const within = event.composedPath();
@@ -278,7 +279,7 @@ function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, ope
         if (motion.stop()) return;
         if (pins.peek()) pins.value = null;
         else if (engine.state.peek().view.measured) engine.setView({ measured: null });
-        else if (engine.busy.peek() || engine.loading.peek()) engine.stop();
+        else if (engine.status.peek() === 'sampling' || engine.loading.peek()) engine.stop();
         else engine.pointOut(null);
       },
     },
@@ -291,7 +292,7 @@ function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, ope
       shown: 'E',
       label: 'Relax one step',
       act: () => {
-        if (!engine.busy.peek()) engine.relax(1);
+        if (engine.status.peek() !== 'sampling') engine.relax(1);
       },
     },
     { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the timeline', act: along('toggle') },
@@ -329,7 +330,7 @@ function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, ope
 
 /** Creates the Run/Stop button that is always visible on a phone. @param {Engine} engine */
 function goButton(engine) {
-  const active = computed(() => engine.busy.value || engine.loading.value !== null);
+  const active = computed(() => engine.status.value === 'sampling' || engine.loading.value !== null);
   const press = once(() => {
     if (active.peek()) engine.stop();
     else engine.run();

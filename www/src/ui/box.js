@@ -72,7 +72,9 @@ export function cutOf(report, enlargement = null) {
  */
 export const isBoxDrawn = (engine) =>
   engine.state.value.view.box ||
-  (engine.empty.value && engine.field.value?.reach !== 'nowhere' && engine.progress.value.stop_reason !== 'constant');
+  (engine.result.value === 'none' &&
+    engine.field.value?.reach !== 'nowhere' &&
+    engine.progress.value.stop_reason !== 'constant');
 
 /** Doubles the box in which the surface is sampled. @param {Engine} engine */
 export function enlarge(engine) {

@@ -128,7 +128,7 @@ class Player {
     if (this.#present() !== this.#value) return false;
     this.#crossings += passedS / CROSSING_S;
     // It waits for a run longer than a frame, which would otherwise be replaced before any of it is seen.
-    if (this.engine.busy.peek()) return true;
+    if (this.engine.status.peek() === 'sampling') return true;
     const value = valueAt(this.range, placeAt(this.#crossings, course));
     if (value !== this.#value) {
       this.#value = value;

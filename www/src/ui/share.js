@@ -71,7 +71,7 @@ export function saveMesh(engine, toast, format, how) {
  * @param {string} name  of the file
  */
 async function exported(engine, toast, what, make, name) {
-  if (engine.empty.peek()) {
+  if (engine.result.peek() === 'none') {
     toast({
       id: 'save',
       kind: 'info',

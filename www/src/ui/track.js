@@ -5,9 +5,9 @@ import { h } from './dom.js';
 /** @import { Engine } from '../engine/types.js' */
 
 /** Creates the progress bar. @param {Engine} engine */
-export function createTrack({ busy, reveal, progress, loading }) {
+export function createTrack({ status, reveal, progress, loading }) {
   // The bar follows the reveal of the picture while it lasts, otherwise the run and its report.
-  const works = computed(() => busy.value || progress.value.phase === 'quality');
+  const works = computed(() => status.value !== 'rest');
   const growing = computed(() => works.value || reveal.value !== null || loading.value !== null);
   const fraction = computed(() => {
     if (loading.value) return loading.value.fraction;

@@ -8,7 +8,10 @@ import { eventually, open, turn, until } from './engine.js';
 /** Waits until nothing runs and the figures are there, or there is no surface. @param {Console} p */
 async function settled({ engine, debug }) {
   await eventually(
-    () => !engine.busy.value && engine.progress.value.phase === 'done' && (engine.report.value || engine.empty.value),
+    () =>
+      engine.status.value !== 'sampling' &&
+      engine.progress.value.phase === 'done' &&
+      (engine.report.value || engine.result.value === 'none'),
   ).toBeTruthy();
   await debug.still();
 }
@@ -50,7 +53,7 @@ describe('the camera', () => {
     const { camera } = p.state.view;
     for (const text of ['x^2 + 1', 'x^2 + y^2 + z^2 = -9']) {
       p.engine.setFormula(text);
-      await until(p.engine.empty, (empty) => empty);
+      await until(p.engine.result, (result) => result === 'none');
       await turn(2 * TYPING_MS);
       await p.debug.still();
       expect(p.state.view.camera).toEqual(camera);
@@ -71,7 +74,7 @@ describe('the camera', () => {
     await p.set({ settings: { box_mode: 'fixed' } });
     const { distance } = p.state.view.camera;
     p.engine.setFormula('x^2 + y^2 + (z - 60)^2 = 1');
-    await until(p.engine.empty, (empty) => empty);
+    await until(p.engine.result, (result) => result === 'none');
     p.engine.fit();
     await p.debug.still();
     expect(p.state.view.camera.distance).toBeGreaterThan(distance);
@@ -81,7 +84,7 @@ describe('the camera', () => {
 /** Lets the hand that types rest. @param {Console} p */
 async function paused({ engine }) {
   await turn(TYPING_MS);
-  expect(engine.typing.value).toBe(false);
+  expect(engine.trial.value).not.toBe('typing');
 }
 
 describe('while somebody types', () => {
@@ -101,7 +104,7 @@ describe('while somebody types', () => {
     }
     const after = seen();
     expect(after).toEqual(before);
-    expect(engine.typing.value).toBe(true);
+    expect(engine.trial.value).toBe('typing');
   }
 
   test('no beginning of a formula is sampled, and the pause brings the whole of it', async () => {
@@ -122,7 +125,7 @@ describe('while somebody types', () => {
     const p = await open();
     const { positions, camera } = { ...p.particles(), camera: p.state.view.camera };
     await type(p, 'x^2+y^2+z^2=-1');
-    await until(p.engine.empty, (empty) => empty);
+    await until(p.engine.result, (result) => result === 'none');
     const { columns } = p.engine;
     expect(columns.positions.slice(0, 3 * columns.count)).toEqual(positions);
     expect(p.state.view.camera).toEqual(camera);
@@ -135,7 +138,7 @@ describe('while somebody types', () => {
     for (let k = 1; k <= text.length; k += 1) {
       engine.setFormula(text.slice(0, k), { typing: true });
       await paused(p);
-      await eventually(() => engine.busy.value).toBe(false);
+      await eventually(() => engine.status.value).not.toBe('sampling');
       if (engine.trial.value === 'shown') trials += 1;
     }
     await settled(p);
@@ -160,7 +163,7 @@ describe('while somebody types', () => {
       // Where no surface is found, the one in the picture is not measured or saved; beside a mistake it is.
       expect(p.particles().count).toBe(count * columns.count);
       expect(p.report()?.digest).toBe(count ? report?.digest : undefined);
-      expect(p.engine.empty.value).toBe(count === 0);
+      expect(p.engine.result.value === 'none').toBe(count === 0);
     });
 
   test('a formula that has a surface is fitted, and stands after another pause, or at once by Enter', async () => {
@@ -173,7 +176,7 @@ describe('while somebody types', () => {
       const before = p.state.view.camera.distance;
       await type(p, text);
       await paused(p);
-      await eventually(() => p.engine.busy.value).toBe(false);
+      await eventually(() => p.engine.status.value).not.toBe('sampling');
       expect(p.engine.trial.value).toBe('shown');
       if (enter) p.engine.setFormula(text);
       else await until(p.engine.trial, (trial) => trial === 'none');
@@ -185,7 +188,7 @@ describe('while somebody types', () => {
       expect(p.state.view.camera.distance / before).toBeGreaterThan(2);
     }
     p.engine.setFormula('x^2+y^2+z^2=-400', { typing: true });
-    await until(p.engine.empty, (empty) => empty);
+    await until(p.engine.result, (result) => result === 'none');
     await p.debug.still();
     expect(p.state.view.camera.distance / distance).toBeGreaterThan(8);
   });
@@ -198,10 +201,10 @@ describe('while somebody types', () => {
       () => p.engine.run(),
     ]) {
       p.engine.setFormula(`x^2+y^2+z^2=${p.state.formula.length}`, { typing: true });
-      expect(p.engine.busy.value).toBe(false);
+      expect(p.engine.status.value).not.toBe('sampling');
       finish();
-      expect(p.engine.busy.value).toBe(true);
-      expect(p.engine.typing.value).toBe(false);
+      expect(p.engine.status.value).toBe('sampling');
+      expect(p.engine.trial.value).not.toBe('typing');
       await settled(p);
       expect(p.engine.field.value?.formula).toBe(p.state.formula);
     }
@@ -211,7 +214,7 @@ describe('while somebody types', () => {
     const p = await open();
     await type(p, 'x^2 + siin(y');
     await until(p.engine.fieldError, (error) => error?.kind === 'unknown_function');
-    expect(p.engine.typing.value).toBe(false);
+    expect(p.engine.trial.value).not.toBe('typing');
   });
 });
 

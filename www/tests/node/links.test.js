@@ -48,7 +48,7 @@ describe('links', () => {
     ])) {
       void p.engine.openLink(link(state));
       await eventually(() => p.engine[sign].value).toBeTruthy();
-      await until(p.engine.busy, (busy) => !busy);
+      await until(p.engine.status, (status) => status !== 'sampling');
       expect(p.debug.counts().dimmed).toBe(true);
       expect(p.report()?.count).toBe(count);
       expect(p.particles().count).toBe(count);

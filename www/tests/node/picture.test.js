@@ -267,7 +267,7 @@ test('a tab hidden while the surface grows is not stuck half-way', async () => {
   p.engine.run();
   await until(p.engine.reveal, (reveal) => reveal);
   hide(true);
-  await until(p.engine.busy, (busy) => !busy);
+  await until(p.engine.status, (status) => status !== 'sampling');
   hide(false);
   await until(p.engine.reveal, (reveal) => reveal === null);
   await expectSurface(p);

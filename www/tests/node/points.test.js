@@ -86,8 +86,8 @@ test('a stop in a run on a model keeps what there is, and nobody takes it for a 
   void p.set({ settings: { sampling: 'adaptive', chord_error: 5e-5, relax_steps: 100 } });
   await until(p.engine.progress, ({ phase, particles }) => phase === 'generation' && particles > 200);
   p.engine.stop();
-  await until(p.engine.busy, (busy) => !busy);
-  expect(p.engine.partial.value).toBe(true);
+  await until(p.engine.status, (status) => status !== 'sampling');
+  expect(p.engine.result.value).toBe('partial');
   expect(p.engine.progress.value.stop_reason).toBe('cancelled');
   expect(p.particles().count).toBeGreaterThan(200);
   expect(p.debug.counts().restarts).toBe(0);
@@ -164,7 +164,7 @@ test('a solver that does not load is named, and the surface stays; without any s
   const p = await open();
   p.engine.setSurface('bunny');
   const error = await until(p.engine.loadingError, (now) => now);
-  await until(p.engine.busy, (busy) => !busy);
+  await until(p.engine.status, (status) => status !== 'sampling');
   expect(error).toMatchObject({ kind: 'bundle', message: expect.stringContaining('404') });
   expect(p.state.surface).toBe('ellipsoid');
   await expectSurface(p);

@@ -35,7 +35,7 @@ async function attack(p, { state, worker, death }) {
     pending.add(name);
     promise.catch(() => {}).then(() => pending.delete(name));
   };
-  const isBusy = () => engine.busy.value || engine.progress.value.phase !== 'done';
+  const isBusy = () => engine.status.value === 'sampling' || engine.progress.value.phase !== 'done';
   const settled = async () => {
     // What a file waits for ends with its worker.
     const isLoading = () => engine.loading.value && worker !== 'points';
@@ -43,7 +43,7 @@ async function attack(p, { state, worker, death }) {
       // The engine cannot know yet that its worker is gone, and waits for a word of it. The sampler
       // is let work meanwhile, which would be silent for as long by the same clock. A worker that
       // fits points ends with each file, so its end says nothing once the file before is settled.
-      const isWaiting = worker === 'sampler' || (pending.has('open before') && !engine.busy.value);
+      const isWaiting = worker === 'sampler' || (pending.has('open before') && engine.status.value !== 'sampling');
       const isSilent = workers[worker].at(-1)?.isEnded && isWaiting;
       await (isSilent ? turn(SILENCE_MS + GRACE_MS) : pause(20));
     }

@@ -79,7 +79,7 @@ test('a stop keeps the partial surface, says so, and does not wait for the pictu
   await until(p.engine.progress, ({ phase, particles }) => phase === 'generation' && particles > 0);
   await p.stop();
   expect(isDrawn).toBe(false);
-  expect(p.engine.partial.value).toBe(true);
+  expect(p.engine.result.value).toBe('partial');
   expect(p.engine.progress.value.stop_reason).toBe('cancelled');
   expect(p.particles().count).toBeGreaterThan(0);
 });
@@ -100,7 +100,7 @@ test('a slider dragged at 120 Hz ends at its last value, with one surface on scr
   }
   p.engine.setParameter('a', 1.2);
   await until(p.engine.report, (report) => report);
-  expect(p.engine.busy.value).toBe(false);
+  expect(p.engine.status.value).not.toBe('sampling');
   const { positions, count } = p.particles();
   let widest = 0;
   for (let i = 0; i < count; i += 1) widest = Math.max(widest, Math.abs(positions[3 * i]));
@@ -148,7 +148,7 @@ test('a formula without a surface leaves the last one, dimmed, says why, and tak
   const p = await open();
   const isDimmed = () => p.debug.counts().dimmed;
   p.engine.setFormula('x^2 + y^2 + z^2 + 1');
-  await until(p.engine.empty, (empty) => empty);
+  await until(p.engine.result, (result) => result === 'none');
   expect(p.engine.progress.value.message).toBeTruthy();
   expect(isDimmed()).toBe(true);
   // The camera stays with the last surface.
@@ -163,7 +163,7 @@ test('a formula without a surface leaves the last one, dimmed, says why, and tak
   }
   p.engine.setFormula('x^2 + y^2 + z^2 = 1');
   await eventually(isDimmed).toBe(false);
-  expect(p.engine.empty.value).toBe(false);
+  expect(p.engine.result.value).not.toBe('none');
 });
 
 test.runIf(ALL)('the code of a run is that of the command line', async () => {
@@ -272,8 +272,8 @@ test('a mesh is made by the refined method, once, and its figures are those of t
   const p = await open(link({ settings: { radius_share: 0.01 } }));
   const { particles } = p.engine.progress.value;
   p.engine.makeMesh();
-  expect(p.engine.busy.value).toBe(true);
-  await until(p.engine.busy, (busy) => !busy);
+  expect(p.engine.status.value).toBe('sampling');
+  await until(p.engine.status, (status) => status !== 'sampling');
   const mesh = await until(p.engine.mesh, (made) => made);
   const report = await until(p.engine.report, (told) => told && told.smallest_angle !== null && told);
   // The state keeps the method that was chosen.
@@ -284,15 +284,15 @@ test('a mesh is made by the refined method, once, and its figures are those of t
   expect(mesh?.smallest_angle).toBeGreaterThan(30);
   expect(particles).toBeGreaterThan(0);
   // It is there already.
-  await until(p.engine.busy, (busy) => !busy);
+  await until(p.engine.status, (status) => status !== 'sampling');
   const { run } = p.engine.progress.value;
   p.engine.setView({ draw: 'discs' });
   p.engine.makeMesh();
-  expect(p.engine.busy.value).toBe(false);
+  expect(p.engine.status.value).not.toBe('sampling');
   expect(p.engine.progress.value.run).toBe(run);
   // Back to the particles as they were: the method, and how they are drawn.
   p.engine.leaveMesh();
-  await until(p.engine.busy, (busy) => !busy);
+  await until(p.engine.status, (status) => status !== 'sampling');
   expect(p.engine.state.value.view.draw).toBe('discs');
   expect(p.engine.columns.record?.settings.method).not.toBe('refined');
   expect(p.engine.progress.value.particles).toBe(particles);
@@ -305,7 +305,7 @@ test('another surface keeps the settings of the sampling, not those of the surfa
     plane: { normal: [1, 0, 0], offset: 0 },
   });
   p.engine.setSurface('torus');
-  await until(p.engine.busy, (busy) => !busy);
+  await until(p.engine.status, (status) => status !== 'sampling');
   expect(p.state).toMatchObject({ surface: 'torus', settings: { relax_steps: 4 }, plane: null });
   expect(Object.keys(p.state.settings)).toEqual(['relax_steps']);
   await p.set({ settings: { thickness: 0.2 } });

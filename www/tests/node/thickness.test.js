@@ -27,6 +27,6 @@ test('a thickness is a number or a formula of the present surface', async () => 
   // Another formula may not have the name.
   await p.set({ settings: { ...settings, thickness: '0.3 + 0.1t' } });
   engine.setFormula('sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x)');
-  await until(engine.busy, (busy) => !busy);
+  await until(engine.status, (status) => status !== 'sampling');
   expect(engine.notice.value).toMatchObject({ kind: 'error', text: expect.stringContaining('no parameter `t`') });
 });

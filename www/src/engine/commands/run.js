@@ -21,19 +21,19 @@ const MOST_STEPS = 1000;
  */
 
 /** @param {Parts} parts @returns {RunCommands} */
-export function runCommands({ store, columns, scheduler, picture: { viewer } }) {
+export function runCommands({ store, columns, sampler, picture: { viewer } }) {
   /** Whether a method placed the particles. @param {Settings[string]} method */
   const isOf = (method) => columns.record?.settings.method === method;
   return {
     run() {
       showAll(store);
-      scheduler.resample({ kind: 'grow' });
+      sampler.resample({ kind: 'grow' });
     },
     makeMesh() {
       const { draw, level, step } = store.state.value.view;
       store.meshing.value ??= { draw, level, step };
       // This comes before the picture asks for a mesh, so that no mesh is made of the current particles.
-      if (!isOf('refined') || store.partial.value) scheduler.resample();
+      if (!isOf('refined') || store.result.value === 'partial') sampler.resample();
       changeView(store, { draw: 'mesh', level: null, step: null });
     },
     leaveMesh() {
@@ -43,7 +43,7 @@ export function runCommands({ store, columns, scheduler, picture: { viewer } }) 
       const { view, settings } = store.state.value;
       // If the user chose another way of drawing meanwhile, it stays.
       if (view.draw === 'mesh') changeView(store, before);
-      if (!isOf(completeSettings(description(store), settings).method)) scheduler.resample();
+      if (!isOf(completeSettings(description(store), settings).method)) sampler.resample();
     },
     leaveOutChips() {
       if (!columns.mesh?.about.chips.length) return;
@@ -51,14 +51,14 @@ export function runCommands({ store, columns, scheduler, picture: { viewer } }) 
       viewer.meshed();
       store.mesh.value = columns.mesh.about;
     },
-    stop: () => scheduler.stop(),
+    stop: () => sampler.stop(),
     generateOnly() {
       if (unrelaxed(patternOf(store.state.value.settings))) return;
       const settings = { ...completeSettings(description(store), store.state.value.settings), relax_steps: 0 };
-      scheduler.resample({ kind: 'grow', settings });
+      sampler.resample({ kind: 'grow', settings });
     },
     relax(steps) {
-      if (steps > 0 && !unrelaxed(columns.pattern)) scheduler.sampling.relax(Math.min(MOST_STEPS, Math.round(steps)));
+      if (steps > 0 && !unrelaxed(columns.pattern)) sampler.relax(Math.min(MOST_STEPS, Math.round(steps)));
     },
   };
 }

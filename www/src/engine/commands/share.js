@@ -28,7 +28,7 @@ export const fetchExports = () => import('../share/exports.js');
  */
 
 /** @param {Parts} parts @returns {ShareCommands} */
-export function shareCommands({ store, columns, picture: { viewer }, scheduler, adopt }) {
+export function shareCommands({ store, columns, picture: { viewer }, sampler, loader, adopt }) {
   /** @type {EngineCommands['picture']} */
   async function picture({ width, height, transparent = false } = {}) {
     const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
@@ -42,7 +42,7 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
     link: () => encode(store.state.value, description(store)),
     async openLink(link, { initial = false, patch = {} } = {}) {
       const about = description(store);
-      const { state, reset, problem } = await decode(link, about, scheduler.loader.hasFile);
+      const { state, reset, problem } = await decode(link, about, loader.hasFile);
       if (problem) {
         const outcome = initial ? 'This is the standard surface instead.' : 'Nothing was changed.';
         store.notice.value = { id: 'link', kind: 'warn', text: `${problem} ${outcome}` };
@@ -51,14 +51,14 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
         const what = [...new Set(reset)].join(', ');
         store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
       }
-      const whole = mergeState(state, { ...patch }, about, scheduler.loader.hasFile).state;
+      const whole = mergeState(state, { ...patch }, about, loader.hasFile).state;
       // A link without a camera gets the default camera, whose distance fits no particular surface.
       const { camera } = whole.view;
       viewer.linked = camera.distance === homeView().camera.distance ? null : camera;
       adopt(whole);
     },
     set(patch) {
-      const { state, reset } = mergeState(store.state.value, patch, description(store), scheduler.loader.hasFile);
+      const { state, reset } = mergeState(store.state.value, patch, description(store), loader.hasFile);
       adopt(state);
       return reset;
     },
@@ -84,10 +84,10 @@ export function shareCommands({ store, columns, picture: { viewer }, scheduler, 
       }
       return format === 'csv' ? csv(exported, all) : ply(exported, all, record);
     },
-    code: (language) => scheduler.sampling.client.code(language),
+    code: (language) => sampler.client.code(language),
     async exportMesh(format, options) {
       const bodies = columns.mesh?.leavesOutChips ? 'without_chips' : 'all';
-      const bytes = await scheduler.sampling.client.meshFile({ bodies, ...options, format });
+      const bytes = await sampler.client.meshFile({ bodies, ...options, format });
       return new Blob([bytes], { type: MIME[format] ?? 'application/octet-stream' });
     },
   };

@@ -55,7 +55,7 @@ const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pu
   JSON.stringify([surface, formula, parameters, declared, centres, bounds, pulls, settings]);
 
 /** @param {Parts} parts @returns {SurfaceCommands} */
-export function surfaceCommands({ store, scheduler, framing, picture: { viewer } }) {
+export function surfaceCommands({ store, sampler, loader, framing, picture: { viewer } }) {
   const { state } = store;
   /**
    * The model before a formula was typed that does not name it, and the last formula typed since. While a text is
@@ -101,10 +101,10 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
       const about = store.description.value;
       const surface = surfaceOf(about, id);
       const isKnown = surface || scanOf(id) || modelOf(about, id);
-      if (!isKnown && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
+      if (!isKnown && !(id === FILE_SURFACE && loader.hasFile)) return;
       showAll(store);
       const fresh = freshShape(description(store), state.value.settings, id);
-      change(store, { ...fresh, ...(id === FILE_SURFACE ? { parameters: scheduler.loader.beginning() } : {}) });
+      change(store, { ...fresh, ...(id === FILE_SURFACE ? { parameters: loader.beginning() } : {}) });
       // The camera fits another surface, even if a pointer or a link has moved it.
       viewer.linked = null;
       const { camera } = viewer;
@@ -112,35 +112,35 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
         camera.set({ ...camera.state, fit: true });
         changeView(store, { camera: camera.state });
       }
-      scheduler.choose('new');
+      sampler.choose('new');
     },
     openFile(file, beside) {
       // A formula that is still waiting for a pause would replace the file.
-      scheduler.forgetLater();
-      return scheduler.loader.openFile(file, beside);
+      sampler.forgetLater();
+      return loader.openFile(file, beside);
     },
     takeFileFor(what) {
-      scheduler.forgetLater();
-      return scheduler.loader.takeFor(what);
+      sampler.forgetLater();
+      return loader.takeFor(what);
     },
     setCentres(count) {
       const centres = validCentres(count, description(store), state.value.surface);
       if (centres === undefined || centres === state.value.centres) return;
       change(store, { centres });
-      scheduler.choose();
+      sampler.choose();
     },
-    cancelLoading: () => scheduler.loader.cancel(),
+    cancelLoading: () => loader.cancel(),
     setFormula(text, { typing = false, whole = false } = {}) {
       if (text !== state.value.formula) {
         const { shape, another } = typed(text, whole);
         change(store, shape);
         framing.written({ typed: true, another });
-      } else if (!store.typing.value) {
-        if (!typing) scheduler.sampling.commit();
+      } else if (store.trial.value !== 'typing') {
+        if (!typing) sampler.commit();
         return;
       }
-      if (typing) scheduler.chooseTyped();
-      else scheduler.choose();
+      if (typing) sampler.chooseTyped();
+      else sampler.choose();
     },
     restore({ camera, ...shape }) {
       const another = shape.surface !== state.value.surface;
@@ -153,13 +153,13 @@ export function surfaceCommands({ store, scheduler, framing, picture: { viewer }
         changeView(store, { camera });
         viewer.frames.ask();
       }
-      if (sampled) scheduler.choose(another ? ((camera?.fit ?? true) ? 'new' : 'grow') : 'change');
+      if (sampled) sampler.choose(another ? ((camera?.fit ?? true) ? 'new' : 'grow') : 'change');
     },
   };
 }
 
 /** @param {Parts} parts @returns {InputCommands} */
-export function inputCommands({ store, scheduler, framing }) {
+export function inputCommands({ store, sampler, framing }) {
   const { state } = store;
   /**
    * Changes the state and the dragging flag together, so that the history records a drag once.
@@ -173,8 +173,8 @@ export function inputCommands({ store, scheduler, framing }) {
   /** @param {boolean} live @param {Partial<State>} patch */
   const resample = (live, patch) => {
     take(live, patch);
-    if (live) scheduler.resampleLive();
-    else scheduler.resample({ kind: 'move' });
+    if (live) sampler.resampleLive();
+    else sampler.resample({ kind: 'move' });
   };
   return {
     setParameter(name, value, { live = false } = {}) {
@@ -184,39 +184,39 @@ export function inputCommands({ store, scheduler, framing }) {
     },
     chooseOfFile(parameters) {
       change(store, { parameters });
-      scheduler.resample({ kind: 'new' });
+      sampler.resample({ kind: 'new' });
     },
     resetParameter(name) {
       const { [name]: _, ...parameters } = state.value.parameters;
       change(store, { parameters });
-      scheduler.resample();
+      sampler.resample();
     },
     pull(parameters, pins, { live = false } = {}) {
       const pulled = { parameters, pins: [...pins] };
       // A pull ends when the core returns its parameters.
       store.dragging.value = true;
-      if (live) scheduler.resampleLive(pulled);
-      else scheduler.resample({ kind: 'move', pulled });
+      if (live) sampler.resampleLive(pulled);
+      else sampler.resample({ kind: 'move', pulled });
     },
     setPulls: (pulls, { live = false } = {}) => resample(live, { pulls: [...pulls] }),
     declareParameter(name) {
       const { declared } = state.value;
       if (declared.some((p) => p.name === name)) return;
       change(store, { declared: [...declared, newParameter(description(store), name)] });
-      scheduler.resample();
+      sampler.resample();
     },
     async readNumber(text) {
       const plain = Number(text.trim().replace(/^([-+]?\d+),(\d+)$/, '$1.$2'));
       if (text.trim() !== '' && Number.isFinite(plain)) return plain;
-      return scheduler.sampling.client.number(text);
+      return sampler.client.number(text);
     },
     section({ corner, sides, size }) {
       // The points are the middles of the pixels.
       const steps = sides.map((side, k) => side.map((length) => length / size[k]));
       const first = corner.map((c, k) => c + 0.5 * (steps[0][k] + steps[1][k]));
-      return scheduler.sampling.client.section([...first, ...steps[0], ...steps[1]], size);
+      return sampler.client.section([...first, ...steps[0], ...steps[1]], size);
     },
-    textFault: (what, text) => scheduler.sampling.client.textFault(what, text),
+    textFault: (what, text) => sampler.client.textFault(what, text),
     setBounds(bounds, { live = false, enlarges = false } = {}) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
       if (valid === undefined) return;
@@ -247,7 +247,7 @@ export function inputCommands({ store, scheduler, framing }) {
     resetSetting(name) {
       const { [name]: _, ...settings } = state.value.settings;
       change(store, { settings });
-      scheduler.resample();
+      sampler.resample();
     },
   };
 }

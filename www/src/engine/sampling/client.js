@@ -1,23 +1,55 @@
 /**
- * Communicates with the sampler's worker: sends jobs and requests, passes its messages on, and tells a new worker what
- * the page needs.
+ * The page's side of the sampler's worker: starts it, sends it jobs and requests, passes its messages on, and replaces
+ * it after a trap or a long silence during work. The page's state lives outside the worker, so only the current run is
+ * lost. A new worker is told what the page needs.
+ *
+ * After more than three replacements in a minute it enters safe mode: no worker runs until the user asks for one.
  *
  * @module
  */
+import { GRACE_MS, LOADING_MS, SILENCE_MS } from '../bundle/load.js';
 import { Requests } from '../bundle/requests.js';
-import { Supervisor } from './supervisor.js';
 
 /**
+ * @import { Timer } from '../bundle/types.js'
  * @import { KeyedFile, Opened } from '../files/types.js'
  * @import { FileRequest, Language } from '../types.js'
- * @import { ClientEvents, Clock, FromWorker, ToWorker, WorkerLike } from './types.js'
+ * @import { ClientOptions, Clock, Crash, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
+
+/** Time window in which replacements are counted. */
+const WINDOW_MS = 60_000;
+/** Largest number of replacements in the window. One more starts safe mode. */
+const RESTARTS = 3;
+
+/** @type {Clock} */
+const BROWSER_CLOCK = {
+  now: () => performance.now(),
+  setTimeout: (f, ms) => setTimeout(f, ms),
+  clearTimeout: (id) => clearTimeout(id),
+};
 
 const lost = () => new Error('The sampler does not hold these particles any more.');
 
 export class SamplingClient {
+  #spawn;
   #onMessage;
+  #onRestart;
+  #onSafeMode;
   #onLoadFailed;
+  #clock;
+  /** @type {WorkerLike | null} */
+  #worker = null;
+  /** @type {'off' | 'loading' | 'up' | 'failed' | 'safe'} */
+  #state = 'off';
+  /** Whether the worker has a run or a report to make. */
+  #isBusy = false;
+  /** Until this time the worker may be silent. */
+  #deadline = 0;
+  /** @type {Timer | undefined} */
+  #timer;
+  /** When workers were replaced. @type {number[]} */
+  restarts = [];
 
   /**
    * Whether the page shows the curvature and a mesh, and the formula of the value it shows. New workers get them, too.
@@ -31,48 +63,33 @@ export class SamplingClient {
   #opening = new Requests();
   /** @type {(label: string, fraction: number) => void} */
   #onOpening = () => {};
-  #isBusy = false;
 
-  /** @param {ClientEvents & {spawn: () => WorkerLike, clock?: Clock}} options */
-  constructor({ spawn, clock, onMessage, onRestart, onSafeMode, onLoadFailed }) {
+  /** @param {ClientOptions} options */
+  constructor({ spawn, onMessage, onRestart, onSafeMode, onLoadFailed, clock = BROWSER_CLOCK }) {
+    this.#spawn = spawn;
     this.#onMessage = onMessage;
+    this.#onRestart = onRestart;
+    this.#onSafeMode = onSafeMode;
     this.#onLoadFailed = onLoadFailed;
-    this.supervisor = new Supervisor({
-      spawn,
-      clock,
-      onMessage: (message) => this.#receive(message),
-      onRestart,
-      onSafeMode,
-      onLoadError: (message) => onLoadFailed(`The sampler did not load: ${message}.`),
-    });
+    this.#clock = clock;
   }
 
   /** Whether there is a worker; it may still be loading. */
   get isThere() {
-    return this.supervisor.worker !== null;
+    return this.#worker !== null;
   }
 
   /** Whether there is no worker and none is loading. */
   get isOff() {
-    return ['failed', 'safe'].includes(this.supervisor.state);
+    return ['failed', 'safe'].includes(this.#state);
   }
 
-  start() {
-    this.supervisor.start();
-  }
+  // ---- requests
+  // -------------------------------------------------------------------------------------------------------
 
-  /** Starts a worker at the user's request, after several have failed. */
-  revive() {
-    this.supervisor.revive();
-  }
-
-  close() {
-    this.supervisor.stop();
-  }
-
-  /** @param {ToWorker} message */
+  /** @param {ToWorker} message  dropped while there is no worker */
   post(message) {
-    this.supervisor.post(message);
+    this.#worker?.postMessage(message);
   }
 
   /**
@@ -104,7 +121,7 @@ export class SamplingClient {
       if (this.isThere) this.post({ type: 'export', request, file });
       else this.#files.refuse(request, lost());
     });
-    this.#attend();
+    this.#watch();
     return bytes;
   }
 
@@ -176,25 +193,142 @@ export class SamplingClient {
     this.#texts.refuseAll(lost());
     this.#opening.refuseAll(lost());
     this.#files.refuseAll(lost());
-    this.#attend();
+    this.#watch();
+  }
+
+  // ---- the life of the worker
+  // -----------------------------------------------------------------------------------------
+
+  start() {
+    if (this.#worker) return;
+    const worker = this.#spawn();
+    this.#worker = worker;
+    this.#state = 'loading';
+    this.#watch();
+    worker.onmessage = ({ data }) => {
+      // Late messages of a terminated worker are ignored.
+      if (this.#worker === worker) this.receive(data);
+    };
+    worker.onerror = (event) => {
+      if (this.#worker !== worker) return;
+      if (this.#state === 'loading') this.#fail(event.message || 'its script did not load');
+      else this.#replace('panic', event.message || 'uncaught error', '');
+    };
+  }
+
+  /** Leaves safe mode at the user's request and starts a worker. */
+  revive() {
+    if (this.#worker) return;
+    this.restarts = [];
+    this.start();
   }
 
   /** Sets whether the worker has a run or a report to make. @param {boolean} isBusy */
   setBusy(isBusy) {
     this.#isBusy = isBusy;
-    this.#attend();
-  }
-
-  /** A silent worker is replaced only if it has work. */
-  #attend() {
-    this.supervisor.setBusy(this.#isBusy || this.#files.count > 0);
+    this.#watch();
   }
 
   /** @param {FromWorker} message */
-  #receive(message) {
+  receive(message) {
+    if (message.type === 'ready') {
+      this.#state = 'up';
+      // The timer still waits for the end of loading, which would be later than the end of the next silence.
+      this.#rest();
+    }
+    this.#heard();
+    // The core mends a mesh in one go, which takes seconds if the mesh is large.
+    if (message.type === 'opening' || message.type === 'open_progress') this.#deadline = this.#clock.now() + LOADING_MS;
+    if (message.type === 'failed') {
+      this.#drop();
+      this.#state = 'failed';
+    }
+    if (message.type === 'crashed') return this.#replace('panic', message.message, message.stack);
+    this.#watch();
+    this.#answer(message);
+  }
+
+  /** How long the worker may be silent. No input can hang it while it loads, but a browser may compile for long. */
+  get #patience() {
+    return this.#state === 'loading' ? LOADING_MS : SILENCE_MS;
+  }
+
+  #heard() {
+    this.#deadline = this.#clock.now() + this.#patience;
+  }
+
+  /** Monitors the worker's silence while it loads or has work. */
+  #watch() {
+    const works = this.#isBusy || this.#files.count > 0 || this.#state === 'loading';
+    if (!this.#worker || !works) {
+      this.#rest();
+    } else if (this.#timer === undefined) {
+      this.#heard();
+      this.#wait();
+    }
+  }
+
+  #wait() {
+    this.#timer = this.#clock.setTimeout(() => this.#check(false), Math.max(1, this.#deadline - this.#clock.now()));
+  }
+
+  /** @param {boolean} again */
+  #check(again) {
+    this.#timer = undefined;
+    if (this.#clock.now() < this.#deadline) this.#wait();
+    else if (!again) this.#timer = this.#clock.setTimeout(() => this.#check(true), GRACE_MS);
+    else if (this.#state === 'loading') this.#fail(`no word from it for ${LOADING_MS / 1000} s`);
+    else this.#replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
+  }
+
+  /** Gives up on a worker that did not load. @param {string} message */
+  #fail(message) {
+    this.#drop();
+    this.#state = 'failed';
+    this.#onLoadFailed(`The sampler did not load: ${message}.`);
+  }
+
+  #rest() {
+    this.#clock.clearTimeout(this.#timer);
+    this.#timer = undefined;
+  }
+
+  #drop() {
+    this.#rest();
+    const worker = this.#worker;
+    this.#worker = null;
+    if (worker) {
+      worker.onmessage = null;
+      worker.onerror = null;
+      worker.terminate();
+    }
+    this.#isBusy = false;
+  }
+
+  /** @param {Crash['cause']} cause @param {string} message @param {string} stack */
+  #replace(cause, message, stack) {
+    this.#drop();
+    const now = this.#clock.now();
+    this.restarts = [...this.restarts.filter((t) => now - t < WINDOW_MS), now];
+    const crash = { cause, message, stack, restarts: this.restarts.length };
+    if (this.restarts.length > RESTARTS) {
+      this.#state = 'safe';
+      this.#onSafeMode(crash);
+    } else {
+      this.start();
+      this.#onRestart(crash);
+    }
+  }
+
+  close() {
+    this.#drop();
+    this.#state = 'off';
+  }
+
+  /** @param {FromWorker} message */
+  #answer(message) {
     switch (message.type) {
       case 'ready':
-        this.#attend();
         for (const what of /** @type {const} */ (['curvature', 'mesh']))
           if (this.#wishes[what]) this.post({ type: what, on: true });
         if (this.#wishes.value) this.post({ type: 'value', text: this.#wishes.value });
@@ -203,7 +337,6 @@ export class SamplingClient {
         return this.#onLoadFailed(message.message);
       case 'beat':
       case 'opening':
-      case 'crashed':
         return;
       case 'number':
         return this.#texts.answer(message.request, message.value);
@@ -222,7 +355,7 @@ export class SamplingClient {
       case 'file':
         if (message.bytes) this.#files.answer(message.request, message.bytes);
         else this.#files.refuse(message.request, lost());
-        return this.#attend();
+        return this.#watch();
       default:
         this.#onMessage(message);
     }

@@ -6,12 +6,12 @@
 
 /**
  * @import { Notice } from '../types.js'
- * @import { Crash, RunRequest } from './types.js'
+ * @import { Crash, Job } from './types.js'
  */
 
 /**
  * Returns the notice after the worker was replaced. Its run is repeated or abandoned.
- * @param {Crash} crash @param {RunRequest | null} lost @param {{again: boolean, version: string}} context
+ * @param {Crash} crash @param {Job | null} lost @param {{again: boolean, version: string}} context
  * @returns {Notice}
  */
 export function restartNotice(crash, lost, { again, version }) {
@@ -28,7 +28,7 @@ export function restartNotice(crash, lost, { again, version }) {
 
 /**
  * @param {Crash} crash
- * @param {RunRequest | null} lost
+ * @param {Job | null} lost
  * @param {string} version
  * @param {() => void} run
  * @returns {Notice}
@@ -60,7 +60,7 @@ export const refusalNotice = (words) => ({
 /**
  * Returns a crash report for the user to copy.
  * @param {Crash} crash
- * @param {RunRequest | null} lost
+ * @param {Job | null} lost
  * @param {string} version  of the core
  */
 function crashReport(crash, lost, version) {

@@ -15,7 +15,7 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 /**
  * @import { Core } from '../../wasm/core/core.js'
  * @import { CoreProgress, Figures, Seconds } from '../types.js'
- * @import { ColumnsMessage, DoneMessage, Env, Job, Memory, Mesh } from './types.js'
+ * @import { ColumnsMessage, DoneMessage, Env, Job, Memory, Mesh, Numbered } from './types.js'
  */
 
 /** First budget of a phase. No unit takes more than a third of a millisecond, so a Stop takes effect within 100 ms. */
@@ -77,12 +77,12 @@ export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mes
 /**
  * Runs a job until it ends or is interrupted.
  * @param {Core} core
- * @param {Job} job
+ * @param {Pick<Numbered, 'id' | 'job'>} numbered
  * @param {Env} env
  * @param {Memory} memory
  */
-export async function runJob(core, job, env, memory) {
-  const run = new Execution(core, job, env);
+export async function runJob(core, { id, job }, env, memory) {
+  const run = new Run(core, id, job, env);
   if (!(await run.fit(memory)) || run.isOver() || !run.start(memory)) return;
   const last = await run.sample();
   if (!last) {
@@ -93,28 +93,29 @@ export async function runJob(core, job, env, memory) {
     memory.held = 0;
     return;
   }
-  const stopped = last.stop_reason === 'cancelled' || (memory.gaveUp && memory.meshed === job.id);
+  const stopped = last.stop_reason === 'cancelled' || (memory.gaveUp && memory.meshed === id);
   const reported = (!KINDS[job.kind].isLive || stopped) && core.count() > 0;
   run.done(stopped ? 'stopped' : 'complete', '', reported);
   run.record();
   if (reported) await run.measure();
 }
 
-/** The execution of a job: its times, its latest progress, and what the page has received. */
-class Execution {
+/** The run of a job, in the worker: its times, its latest progress, and what the page has received. */
+class Run {
   #isLive;
   #grows;
 
-  /** Time of the last message, a sign of life for the supervisor. */
+  /** Time of the last message, a sign of life. */
   #beatMs;
   #isHanding;
 
-  /** @param {Core} core @param {Job} job @param {Env} env */
-  constructor(core, job, env) {
+  /** @param {Core} core @param {number} id @param {Job} job @param {Env} env */
+  constructor(core, id, job, env) {
     const { isLive = false, grows = false } = KINDS[job.kind];
     this.#isLive = isLive;
     this.#grows = grows;
     this.core = core;
+    this.id = id;
     this.job = job;
     this.env = env;
     /** @type {Seconds} */
@@ -135,11 +136,11 @@ class Execution {
 
   /** @param {DoneMessage['outcome']} outcome @param {string} [message] @param {boolean} [reportFollows] */
   done(outcome, message = '', reportFollows = false) {
-    const { job, progress, predicted, followed } = this;
+    const { id, progress, predicted, followed } = this;
     const seconds = { ...this.seconds };
     this.env.post({
       type: 'done',
-      id: job.id,
+      id,
       outcome,
       progress,
       seconds,
@@ -153,7 +154,7 @@ class Execution {
   /** Sends the record of the particles. It follows the end, since the digest of a million takes 0.1 s. */
   record() {
     const record = this.core.record();
-    if (record) this.env.post({ type: 'record', id: this.job.id, record });
+    if (record) this.env.post({ type: 'record', id: this.id, record });
   }
 
   /**
@@ -176,11 +177,11 @@ class Execution {
     if (why === 'stop') return this.#end('stopped');
     if (!answer) return false;
     if (!answer.ok) return this.#end('refused', answer.error.message);
-    env.post({ type: 'box', id: job.id, answer });
+    env.post({ type: 'box', id: this.id, answer });
     return true;
   }
 
-  /** Regularly shows the supervisor that the worker is alive. */
+  /** Regularly shows the page that the worker is alive. */
   #beat() {
     const { env } = this;
     if (env.nowMs() - this.#beatMs <= BEAT_MS) return;
@@ -193,10 +194,10 @@ class Execution {
    * @param {'mesh' | 'quality'} phase
    */
   #tellAfter(phase) {
-    const { core, env, job, progress } = this;
+    const { core, env, progress } = this;
     if (env.nowMs() - this.#beatMs <= PROGRESS_MS) return;
     if (progress) {
-      env.post({ type: 'progress', id: job.id, progress: { ...progress, phase, fraction: core.fraction() } });
+      env.post({ type: 'progress', id: this.id, progress: { ...progress, phase, fraction: core.fraction() } });
     } else {
       env.post({ type: 'beat' });
     }
@@ -223,10 +224,10 @@ class Execution {
     if (job.kind !== 'relax') {
       // Here the core looks for the surface; for a model that is most of the seeding.
       const before = env.nowMs();
-      this.followed = job.following.some((settings) => core.follow(settings, job.isClosed ?? false));
+      this.followed = job.following?.some((settings) => core.follow(settings, false)) ?? false;
       if (this.followed) {
         this.seconds.seeding += (env.nowMs() - before) / 1000;
-        memory.held = job.id;
+        memory.held = this.id;
         return true;
       }
       const start = core.start(job.settings);
@@ -234,8 +235,8 @@ class Execution {
       if (!start.ok) return this.#end('refused', start.error.message);
       const { radius, predicted_count: predicted, warnings } = start;
       this.predicted = predicted;
-      env.post({ type: 'started', id: job.id, radius, predicted, warnings });
-      if (predicted > job.askAbove) {
+      env.post({ type: 'started', id: this.id, radius, predicted, warnings });
+      if (predicted > (KINDS[job.kind].isUnasked ? Infinity : Number(job.settings.max_particles))) {
         core.cancel();
         return this.#end('ask');
       }
@@ -245,7 +246,7 @@ class Execution {
       core.relax(job.steps);
       this.sent.count = core.count();
     }
-    memory.held = job.id;
+    memory.held = this.id;
     return true;
   }
 
@@ -324,7 +325,7 @@ class Execution {
   #tell(progress) {
     const { env } = this;
     if (this.#isDue(progress)) this.#sendColumns(progress);
-    else if (env.nowMs() - this.#beatMs > PROGRESS_MS) env.post({ type: 'progress', id: this.job.id, progress });
+    else if (env.nowMs() - this.#beatMs > PROGRESS_MS) env.post({ type: 'progress', id: this.id, progress });
     else return;
     this.#beatMs = env.nowMs();
   }
@@ -364,7 +365,7 @@ class Execution {
       curvature,
     };
     env.post(
-      { type: 'columns', id: this.job.id, first, total, slotsFrom, curvatureFrom, ...columns, mesh, creases, progress },
+      { type: 'columns', id: this.id, first, total, slotsFrom, curvatureFrom, ...columns, mesh, creases, progress },
       [...Object.values(columns), ...(mesh ? [mesh.triangles] : []), ...Object.values(creases ?? {})].map(
         (c) => c.buffer,
       ),
@@ -383,24 +384,24 @@ class Execution {
    * @returns false if another job replaces this one
    */
   async complete(last, memory) {
-    const { core, env, job, sent } = this;
+    const { core, env, sent } = this;
     if (last.relax_step > 0) sent.curved = 0;
     const wanted = env.mesh() && core.count() > 0;
     const mesh = wanted ? await join(core, env, () => this.#tellAfter('mesh')) : null;
     if (wanted && !mesh && env.interrupt() === 'replace') return false;
     // A mesh that was stopped is made again only when it is requested again.
-    if (wanted) [memory.meshed, memory.gaveUp] = [job.id, !mesh];
+    if (wanted) [memory.meshed, memory.gaveUp] = [this.id, !mesh];
     if (core.count() > sent.count || sent.stale) this.#sendColumns(last, mesh);
-    else if (mesh) env.post(...meshColumn(core, job.id, mesh));
+    else if (mesh) env.post(...meshColumn(core, this.id, mesh));
     if (!sent.settled) {
       const slots = core.slots(0);
-      env.post({ ...bare(core, job.id), slotsFrom: 0, slots, progress: last }, [slots.buffer]);
+      env.post({ ...bare(core, this.id), slotsFrom: 0, slots, progress: last }, [slots.buffer]);
     }
     // Without another step the last stored positions are the current ones, which are not sent again.
     const positions = this.past.slice(0, this.#stepsOf(last));
     if (positions.length > 0) {
       env.post(
-        { type: 'past', id: job.id, positions },
+        { type: 'past', id: this.id, positions },
         positions.map(({ buffer }) => buffer),
       );
     }
@@ -412,7 +413,7 @@ class Execution {
   #sendCurvature() {
     const { core, env, sent } = this;
     if (!env.curvature() || sent.curved === core.count()) return;
-    env.post(...curvatureColumn(core, this.job.id));
+    env.post(...curvatureColumn(core, this.id));
     sent.curved = core.count();
   }
 
@@ -436,7 +437,7 @@ class Execution {
     if (!report) return;
     const figures = /** @type {Figures} */ (Object.fromEntries(MEASURED.map((name) => [name, core[name]()])));
     env.post(
-      { type: 'report', id: this.job.id, report: { ...report, seconds: { ...seconds } }, ...figures },
+      { type: 'report', id: this.id, report: { ...report, seconds: { ...seconds } }, ...figures },
       Object.values(figures).map((c) => c.buffer),
     );
   }

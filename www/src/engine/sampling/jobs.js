@@ -10,8 +10,9 @@ import { KINDS } from './kinds.js';
 /**
  * @import { Core } from '../../wasm/core/core.js'
  * @import { FileKeeper } from '../files/keeper.js'
+ * @import { KeyedFile } from '../files/types.js'
  * @import { FieldAnswer } from '../types.js'
- * @import { FromWorker, Job, SampleJob, ToWorker } from './types.js'
+ * @import { FromWorker, Job, Numbered, SampleJob, ToWorker } from './types.js'
  */
 
 /**
@@ -24,7 +25,7 @@ const PATIENCE_MS = 150;
  * Opens files in the core and makes fields of them. `isReady` does so for a job if necessary, and the worker then asks
  * again. `stop` ends that.
  * @typedef {object} Files
- * @property {(core: Core, job: SampleJob) => boolean} isReady
+ * @property {(core: Core, id: number, file: KeyedFile, field: SampleJob['field']) => boolean} isReady
  * @property {FileKeeper['setField']} setField
  * @property {() => void} stop
  */
@@ -37,18 +38,18 @@ const NO_FILES = {
   stop: () => {},
 };
 
-/** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
+/** A job that has not started. @typedef {Numbered & {stopped: boolean}} Pending */
 
 /**
  * Sets a job's field in the core. A model is passed again with every job: it has a few kilobytes, and keeping track of
  * the core's model would cost more.
- * @param {Core} core @param {SampleJob} job @param {Files} files
+ * @param {Core} core @param {SampleJob} job @param {Numbered['given']} given @param {Files} files
  * @returns {FieldAnswer}
  */
-function setField(core, { field, points, file }, files) {
-  if (file) return files.setField(core, file, field);
-  if (!points) return core.set_field(field);
-  return core.set_points(points.field, points.info, field);
+function setField(core, { field }, given, files) {
+  if (!given) return core.set_field(field);
+  if ('file' in given) return files.setField(core, given.file, field);
+  return core.set_points(given.field, given.info, field);
 }
 
 /**
@@ -94,14 +95,14 @@ export class Jobs {
     this.#waiting = null;
     this.#making = null;
     this.#accepted = null;
-    /** The running job. @type {Job | null} */
+    /** The running job. @type {Numbered | null} */
     this.running = null;
     this.#stopped = false;
   }
 
-  /** @param {Job} job */
-  add(job) {
-    this.#waiting = { job, stopped: false };
+  /** @param {Numbered} next */
+  add({ id, job, given }) {
+    this.#waiting = { id, job, given, stopped: false };
   }
 
   /**
@@ -111,13 +112,13 @@ export class Jobs {
   stop() {
     this.#stopped = true;
     if (this.#making) {
-      this.#post({ type: 'dropped', id: this.#making.job.id });
+      this.#post({ type: 'dropped', id: this.#making.id });
       this.#making = null;
       this.#files.stop();
     }
-    const job = this.#waiting?.job;
-    if (this.running && job && job.kind !== 'relax' && job.following.length > 0) {
-      this.#post({ type: 'dropped', id: job.id });
+    const waiting = this.#waiting;
+    if (this.running && waiting && waiting.job.kind !== 'relax' && waiting.job.following?.length) {
+      this.#post({ type: 'dropped', id: waiting.id });
       this.#waiting = null;
     }
     if (this.#waiting) this.#waiting.stopped = true;
@@ -131,7 +132,7 @@ export class Jobs {
     const next = this.#accepted;
     this.#accepted = null;
     this.#stopped = next?.stopped ?? false;
-    this.running = next?.job ?? null;
+    this.running = next;
     this.#running = { sinceMs: this.#nowMs(), isSampled: false };
     return this.running;
   }
@@ -158,7 +159,7 @@ export class Jobs {
   #isPatient({ kind }) {
     const { running } = this;
     if (!running || this.#running.isSampled || !KINDS[kind].isLive) return false;
-    const isSpared = KINDS[running.kind].isLive || running.kind === 'rest';
+    const isSpared = KINDS[running.job.kind].isLive || running.job.kind === 'rest';
     return isSpared === true && this.#nowMs() - this.#running.sinceMs < PATIENCE_MS;
   }
 
@@ -179,14 +180,14 @@ export class Jobs {
     const next = this.#next();
     this.#making = null;
     if (!next) return;
-    const { job } = next;
-    if (job.kind !== 'relax' && job.file && !this.#files.isReady(core, job)) {
-      this.#making = next;
-      return;
-    }
+    const { id, job, given } = next;
     if (job.kind !== 'relax') {
-      const answer = setField(core, job, this.#files);
-      this.#post({ type: 'field', id: job.id, answer });
+      if (given && 'file' in given && !this.#files.isReady(core, id, given.file, job.field)) {
+        this.#making = next;
+        return;
+      }
+      const answer = setField(core, job, given, this.#files);
+      this.#post({ type: 'field', id, answer });
       if (!answer.ok) return;
     }
     this.#accepted = next;

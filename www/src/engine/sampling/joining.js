@@ -23,7 +23,7 @@ import { BEAT_MS } from './protocol.js';
 const made = async (slice, env, after = beats(env)) => (await inSlices(slice, env, { after })).made;
 
 /**
- * Returns a function that regularly shows the supervisor that the worker is alive.
+ * Returns a function that regularly shows the page that the worker is alive.
  * @param {AfterEnv} env
  */
 function beats({ nowMs, post }) {

@@ -1,10 +1,10 @@
 /**
- * The kinds of runs, and what each means for the picture, the user and the worker.
+ * The kinds of jobs, and what each means for the picture, the user and the worker.
  *
  * @module
  */
 
-/** @import { RunKind } from '../types.js' */
+/** @import { JobKind } from '../types.js' */
 
 /**
  * `grows`: the particles are sent while the front grows; otherwise the current picture stays until the front is
@@ -14,7 +14,7 @@
  * @typedef {Partial<Record<'grows' | 'fits' | 'isLive' | 'isUnasked' | 'restores', boolean>>} Traits
  */
 
-/** @type {Readonly<Record<RunKind, Traits>>} */
+/** @type {Readonly<Record<JobKind, Traits>>} */
 export const KINDS = {
   // A new surface, shown while it grows; the camera fits it.
   new: { grows: true, fits: true },

@@ -1,5 +1,5 @@
 /**
- * What the page knows about the jobs it has sent: a record that only {@link reduce} replaces, and functions of it. All
+ * What the page knows of the runs it has sent: a record that only {@link reduce} replaces, and functions of it. All
  * functions are pure: the sampler passes events and acts on the result.
  *
  * @module
@@ -8,8 +8,8 @@ import { clampSettings } from '../share/state.js';
 import { KINDS } from './kinds.js';
 
 /**
- * @import { Description, Trial } from '../types.js'
- * @import { Ledger, LedgerEvent, Outcome, RunRequest, SampleRequest, Shown, Stage, Ticket } from './types.js'
+ * @import { Description, Status, Trial } from '../types.js'
+ * @import { Job, Ledger, LedgerEvent, Outcome, Run, SampleJob, Shown, Stage } from './types.js'
  */
 
 /** @type {Ledger} */
@@ -31,27 +31,27 @@ export const IDLE = Object.freeze({
 export function reduce(state, event) {
   switch (event.type) {
     case 'sent': {
-      const { request, nowMs } = event;
+      const { job, nowMs } = event;
       const id = state.lastId + 1;
-      /** @type {Ticket} */
-      const ticket = { id, request, bounds: null, stage: 'seeding', sinceMs: nowMs };
+      /** @type {Run} */
+      const run = { id, job, bounds: null, stage: 'seeding', sinceMs: nowMs };
       const next = { ...state, lastId: id };
       // A relaxation sets no field, so it is current at once.
-      return request.kind === 'relax' ? { ...next, current: ticket } : { ...next, asked: [...state.asked, ticket] };
+      return job.kind === 'relax' ? { ...next, current: run } : { ...next, asked: [...state.asked, run] };
     }
     case 'accepted': {
-      const ticket = askedFor(state, event.id);
-      if (!ticket || ticket.request.kind === 'relax') return state;
-      const { request } = ticket;
-      // The time it waited for the previous job is no part of its own cost.
-      const sinceMs = Math.max(ticket.sinceMs, state.endedMs);
+      const run = askedFor(state, event.id);
+      if (!run || run.job.kind === 'relax') return state;
+      const { job } = run;
+      // The time it waited for the previous run is no part of its own cost.
+      const sinceMs = Math.max(run.sinceMs, state.endedMs);
       return {
         ...state,
         asked: after(state.asked, event.id),
-        current: { ...ticket, bounds: event.bounds, sinceMs },
+        current: { ...run, bounds: event.bounds, sinceMs },
         held: 0,
-        accepted: request.kind === 'backdrop' ? state.accepted : request,
-        astray: KINDS[request.kind].restores === true && state.astray,
+        accepted: job.kind === 'backdrop' ? state.accepted : job,
+        astray: KINDS[job.kind].restores === true && state.astray,
       };
     }
     case 'boxed':
@@ -83,21 +83,21 @@ export function reduce(state, event) {
 function firstParticles(state, description) {
   const { current, shown } = state;
   if (current?.stage !== 'seeding') return state;
-  const { request } = current;
+  const { job } = current;
   const next = atStage(state, 'growing');
-  if (request.kind === 'backdrop') return { ...next, shown: null };
-  if (request.kind !== 'relax') {
-    const stood = request.kind === 'trial' ? (state.stood ?? shown) : null;
-    return { ...next, shown: { request, reported: false }, stood };
+  if (job.kind === 'backdrop') return { ...next, shown: null };
+  if (job.kind !== 'relax') {
+    const stood = job.kind === 'trial' ? (state.stood ?? shown) : null;
+    return { ...next, shown: { job, reported: false }, stood };
   }
-  return { ...next, shown: shown && { request: relaxed(shown, request.steps, description), reported: false } };
+  return { ...next, shown: shown && { job: relaxed(shown, job.steps, description), reported: false } };
 }
 
 /** @param {Ledger} state @param {Extract<LedgerEvent, {type: 'done'}>} event */
 function done(state, { outcome, particles, reportFollows, nowMs }) {
   const { current, shown, accepted } = state;
   if (!current) return state;
-  const { kind } = current.request;
+  const { kind } = current.job;
   const next = { ...atStage(state, reportFollows ? 'measuring' : 'over'), endedMs: nowMs };
   if (kind === 'backdrop') return next;
   if (tookPlace(outcome, particles)) {
@@ -107,16 +107,15 @@ function done(state, { outcome, particles, reportFollows, nowMs }) {
     return { ...next, held: 0 };
   }
   // The previous surface stays. It counts as the requested one if the stopped run had the same field.
-  const wanted = current.request.kind === 'relax' ? accepted : current.request;
-  const same = JSON.stringify(shown?.request.field) === JSON.stringify(wanted?.field);
+  const wanted = current.job.kind === 'relax' ? accepted : current.job;
+  const same = JSON.stringify(shown?.job.field) === JSON.stringify(wanted?.field);
   return { ...next, astray: KINDS[kind].restores === true || outcome !== 'stopped' || !same };
 }
 
 /** @param {Ledger} state @returns {Ledger} */
 function committed(state) {
-  /** @type {(ticket: Ticket) => Ticket} */
-  const kept = (ticket) =>
-    ticket.request.kind === 'trial' ? { ...ticket, request: { ...ticket.request, kind: 'change' } } : ticket;
+  /** @type {(run: Run) => Run} */
+  const kept = (run) => (run.job.kind === 'trial' ? { ...run, job: { ...run.job, kind: 'change' } } : run);
   const { current, shown } = state;
   const isAwaited = current?.stage === 'seeding' || state.asked.length > 0;
   return {
@@ -130,40 +129,40 @@ function committed(state) {
 /** Returns the result of the last trial. @param {Ledger} state @returns {Trial} */
 export function trialOf({ stood, shown, current }) {
   if (stood && shown) return 'shown';
-  return current && KINDS[current.request.kind].restores ? 'back' : 'none';
+  return current && KINDS[current.job.kind].restores ? 'back' : 'none';
 }
 
-/** Returns the run that restores a surface. @param {Shown} shown @returns {SampleRequest} */
-const restored = ({ request }) => ({ ...request, kind: 'restore' });
+/** Returns the run that restores a surface. @param {Shown} shown @returns {SampleJob} */
+const restored = ({ job }) => ({ ...job, kind: 'restore' });
 
 /** Whether nothing was requested since the last stop. Then no run starts. @param {Ledger} state */
 const isStopped = ({ lastId, stoppedUpTo }) => lastId === stoppedUpTo;
 
 /**
  * Returns the run after a trial without a surface: it restores the previous surface as a backdrop. Null in any other
- * case, after a stop, or if a later request has been sent.
+ * case, after a stop, or if a later one has been sent.
  * @param {Ledger} state
- * @returns {SampleRequest | null}
+ * @returns {SampleJob | null}
  */
 export function backdropOf(state) {
   const { asked, shown, stood } = state;
-  return stood && shown && asked.length === 0 && !isStopped(state) ? { ...stood.request, kind: 'backdrop' } : null;
+  return stood && shown && asked.length === 0 && !isStopped(state) ? { ...stood.job, kind: 'backdrop' } : null;
 }
 
 /**
- * Returns the run after a failed request: it completes the surface that stays, or restores the one before a trial. Null
- * if that surface is already there, after a stop, or if a later request has been sent.
+ * Returns the run after a failed run: it completes the surface that stays, or restores the one before a trial. Null
+ * if that surface is already there, after a stop, or if a later one has been sent.
  * @param {Ledger} state
- * @returns {SampleRequest | null}
+ * @returns {SampleJob | null}
  */
 export function restoringOf(state) {
   const { asked, current, shown, stood, crashedInput } = state;
-  const isRestored = current !== null && KINDS[current.request.kind].restores && current.stage !== 'over';
+  const isRestored = current !== null && KINDS[current.job.kind].restores && current.stage !== 'over';
   if (!shown || asked.length > 0 || isRestored || isStopped(state)) return null;
-  const isTried = stood !== null || runningOf(state)?.request.kind === 'trial';
-  if (!isTried && (shown.reported || awaitsWorker(state))) return null;
-  const request = restored(stood ?? shown);
-  return inputOf(request) === crashedInput ? null : request;
+  const isTried = stood !== null || runningOf(state)?.job.kind === 'trial';
+  if (!isTried && (shown.reported || statusOf(state) !== 'rest')) return null;
+  const job = restored(stood ?? shown);
+  return inputOf(job) === crashedInput ? null : job;
 }
 
 /** @param {Ledger} state @param {Stage} stage @returns {Ledger} */
@@ -171,13 +170,13 @@ const atStage = (state, stage) => ({ ...state, current: state.current && { ...st
 
 /**
  * Returns the jobs sent after `id`. The worker answers in order, so it skipped earlier jobs without an answer.
- * @param {readonly Ticket[]} asked
+ * @param {readonly Run[]} asked
  * @param {number} id
  */
-const after = (asked, id) => asked.filter((ticket) => ticket.id > id);
+const after = (asked, id) => asked.filter((run) => run.id > id);
 
 /** Returns the job with this id if its field has not been answered. @param {Ledger} state @param {number} id */
-export const askedFor = ({ asked }, id) => asked.find((ticket) => ticket.id === id);
+export const askedFor = ({ asked }, id) => asked.find((run) => run.id === id);
 
 /**
  * Returns the job that the worker has or will have next: the last one sent, or the one that continues because the later
@@ -189,11 +188,11 @@ export function runningOf({ asked, current }) {
   return current?.stage === 'seeding' || current?.stage === 'growing' ? current : null;
 }
 
-/** Returns whether the page waits for particles. @param {Ledger} state */
-export const awaitsParticles = (state) => runningOf(state) !== null;
-
-/** Returns whether the worker has work. @param {Ledger} state */
-export const awaitsWorker = ({ asked, current }) => asked.length > 0 || (current !== null && current.stage !== 'over');
+/** Returns what the page waits for: particles, their report, or nothing. @param {Ledger} state @returns {Status} */
+export function statusOf(state) {
+  if (runningOf(state)) return 'sampling';
+  return state.current?.stage === 'measuring' ? 'measuring' : 'rest';
+}
 
 /**
  * Whether a run with this outcome has made a surface.
@@ -202,22 +201,21 @@ export const awaitsWorker = ({ asked, current }) => asked.length > 0 || (current
  */
 export const tookPlace = (outcome, particles) => outcome === 'complete' || (outcome === 'stopped' && particles > 0);
 
-/** Returns a key to compare the inputs of runs. @param {RunRequest} request */
-export const inputOf = (request) =>
-  JSON.stringify(request.kind === 'relax' ? ['relax', request.steps] : [request.field, request.settings]);
+/** Returns a key to compare the inputs of runs. @param {Job} job */
+export const inputOf = (job) => JSON.stringify(job.kind === 'relax' ? ['relax', job.steps] : [job.field, job.settings]);
 
 /**
  * Returns the run that makes the surface on the page again, with this many more relaxation steps.
  * @param {Shown} shown @param {number} steps
  * @param {Description | null} description  with the ranges of the settings
- * @returns {SampleRequest}
+ * @returns {SampleJob}
  */
-export function relaxed({ request }, steps, description) {
-  const settings = { ...request.settings, relax_steps: Number(request.settings.relax_steps) + steps };
-  const isKept = request.kind === 'trial' || request.kind === 'rest' || request.kind === 'restore';
+export function relaxed({ job }, steps, description) {
+  const settings = { ...job.settings, relax_steps: Number(job.settings.relax_steps) + steps };
+  const isKept = job.kind === 'trial' || job.kind === 'rest' || job.kind === 'restore';
   return {
-    ...request,
-    kind: isKept ? request.kind : 'again',
+    ...job,
+    kind: isKept ? job.kind : 'again',
     settings: description ? clampSettings(description, settings) : settings,
   };
 }
@@ -226,12 +224,12 @@ export function relaxed({ request }, steps, description) {
  * Returns the run that is lost with the worker: the current run, or, for a pending report or a relaxation, the run that
  * leads to the same particles again. Null after a stop.
  * @param {Ledger} state @param {Description | null} description
- * @returns {SampleRequest | null}
+ * @returns {SampleJob | null}
  */
 export function lostRun(state, description) {
   if (isStopped(state)) return null;
   const { shown, current } = state;
-  const atWorker = runningOf(state)?.request ?? null;
+  const atWorker = runningOf(state)?.job ?? null;
   if (atWorker && atWorker.kind !== 'relax') return atWorker;
   if (!shown || (!atWorker && shown.reported)) return null;
   return relaxed(shown, atWorker && current?.stage === 'seeding' ? atWorker.steps : 0, description);

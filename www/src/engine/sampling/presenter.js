@@ -7,16 +7,16 @@ import { batch } from '@preact/signals-core';
 import { MOST_STEPPED } from '../constants.js';
 import { patternOf } from '../patterns.js';
 import { change, idleProgress } from '../store.js';
-import { timingOf } from './cost.js';
 import { refusalNotice } from './faults.js';
 import { KINDS } from './kinds.js';
+import { timingOf } from './pace.js';
 
 /**
  * @import { Store } from '../store.js'
  * @import { Columns, FieldAnswer, FieldRequest, Mesh, Progress, ToldProgress } from '../types.js'
  * @import {
- *   ColumnsMessage, DoneMessage, FromWorker, PastMessage, PictureLike, RecordMessage, ReportMessage, RunRequest,
- *   Ticket,
+ *   ColumnsMessage, DoneMessage, FromWorker, PastMessage, PictureLike, RecordMessage, ReportMessage, Job,
+ *   Run,
  * } from './types.js'
  */
 
@@ -42,27 +42,33 @@ export class Presenter {
   /**
    * Shows that the worker has started another job; whether the last one found a surface no longer matters. Runs during
    * a drag are so short that a text would flicker, so the old text stays until particles are counted.
-   * @param {number} id @param {RunRequest} request
+   * @param {number} id @param {Job} job
    */
-  begin(id, request) {
-    const { kind } = request;
+  begin(id, job) {
+    const { kind } = job;
     if (kind === 'backdrop') return;
     const live = KINDS[kind].isLive === true;
-    if (!live) this.store.empty.value = false;
+    if (!live) this.#found();
     const phase = kind === 'relax' ? 'relaxation' : 'seeding';
     this.store.progress.value = { ...idleProgress(), run: id, live, phase };
   }
 
-  /** Shows how far the field of a run is. @param {Ticket} run @param {number} fraction */
+  /** Forgets that the last run found no surface. */
+  #found() {
+    const { result } = this.store;
+    if (result.value === 'none') result.value = null;
+  }
+
+  /** Shows how far the field of a run is. @param {Run} run @param {number} fraction */
   making({ id }, fraction) {
     this.store.progress.value = { ...idleProgress(), run: id, phase: 'making', fraction };
   }
 
-  /** @param {ToldProgress} progress @param {Ticket} run */
-  progress(progress, { id, request }) {
-    if (request.kind === 'backdrop') return;
-    if (progress.particles > 0) this.store.empty.value = false;
-    this.store.progress.value = { ...progress, run: id, live: KINDS[request.kind].isLive === true };
+  /** @param {ToldProgress} progress @param {Run} run */
+  progress(progress, { id, job }) {
+    if (job.kind === 'backdrop') return;
+    if (progress.particles > 0) this.#found();
+    this.store.progress.value = { ...progress, run: id, live: KINDS[job.kind].isLive === true };
   }
 
   /**
@@ -72,7 +78,7 @@ export class Presenter {
    */
   idle(more = {}) {
     const { columns, store } = this;
-    if (this.#isUnfinished) store.partial.value = true;
+    if (this.#isUnfinished) store.result.value = 'partial';
     store.progress.value = { ...idleProgress(), particles: columns.stale ? 0 : columns.particles, ...more };
   }
 
@@ -117,26 +123,27 @@ export class Presenter {
     this.picture.dim(astray || this.columns.stale || (fault !== null && fault.kind !== 'empty'));
   }
 
-  /** Replaces the particles on the page by the first ones of a run. @param {Ticket} run */
-  first({ request, bounds }) {
+  /** Replaces the particles on the page by the first ones of a run. @param {Run} run */
+  first({ job, bounds }) {
     const { store } = this;
     this.#isUnfinished = true;
     store.report.value = null;
     store.mesh.value = null;
     store.change.value = null;
-    if (request.kind === 'relax') return;
-    const { grows = false, fits = false, isLive = false } = KINDS[request.kind];
-    this.columns.clear(request.settings.sampling === 'adaptive', patternOf(request.settings));
-    this.columns.stale = request.kind === 'backdrop';
+    if (job.kind === 'relax') return;
+    const { grows = false, fits = false, isLive = false } = KINDS[job.kind];
+    this.columns.clear(job.settings.sampling === 'adaptive', patternOf(job.settings));
+    this.columns.stale = job.kind === 'backdrop';
     // The new particles replace those that followed the surface there.
     this.picture.begin({ grow: grows, fit: fits, bounds, meets: this.#followed && !isLive });
     batch(() => {
       store.hover.value = null;
-      store.empty.value = this.columns.stale;
+      if (this.columns.stale) store.result.value = 'none';
+      else this.#found();
     });
   }
 
-  /** @param {ColumnsMessage} message @param {Ticket} run @param {() => void} onDrawn */
+  /** @param {ColumnsMessage} message @param {Run} run @param {() => void} onDrawn */
   particles(message, run, onDrawn) {
     const { columns, picture, store } = this;
     if (!columns.write(message)) return onDrawn();
@@ -161,11 +168,11 @@ export class Presenter {
     store.revision.value += 1;
   }
 
-  /** Receives the positions before a run's relaxation steps. @param {PastMessage} message @param {Ticket} run */
-  past({ positions }, { request }) {
+  /** Receives the positions before a run's relaxation steps. @param {PastMessage} message @param {Run} run */
+  past({ positions }, { job }) {
     const { columns } = this;
     // Later steps continue the earlier ones if all of those were kept.
-    const earlier = request.kind === 'relax' ? columns.past : [];
+    const earlier = job.kind === 'relax' ? columns.past : [];
     const isWhole = earlier.length === 0 || columns.count <= MOST_STEPPED;
     columns.past = isWhole ? [...earlier, ...positions] : earlier;
     this.picture.remembered();
@@ -175,28 +182,28 @@ export class Presenter {
   /**
    * Shows the end of a run, with or without a surface.
    * @param {DoneMessage} message
-   * @param {Ticket} run
+   * @param {Run} run
    * @param {number} particles
    */
-  end({ outcome, progress, seconds, reportFollows, followed }, { id, request }, particles) {
+  end({ outcome, progress, seconds, reportFollows, followed }, { id, job }, particles) {
     const { store, columns } = this;
     this.#followed = followed;
     this.#isUnfinished = false;
-    const { isLive = false, fits = false } = KINDS[request.kind];
-    if (request.kind === 'backdrop') return;
+    const { isLive = false, fits = false } = KINDS[job.kind];
+    if (job.kind === 'backdrop') return;
     if (particles === 0) {
       // The last surface stays visible until there is another, but it cannot be measured or exported.
       columns.stale = columns.count > 0;
       store.report.value = null;
       store.hover.value = null;
     }
-    store.empty.value = particles === 0;
+    const isPartial = outcome === 'stopped' || progress?.stop_reason === 'cap';
+    store.result.value = particles === 0 ? 'none' : isPartial ? 'partial' : 'whole';
     store.revision.value += 1;
-    store.partial.value = outcome === 'stopped' || progress?.stop_reason === 'cap';
     if (progress) {
       store.progress.value = { ...progress, run: id, live: isLive, phase: reportFollows ? 'quality' : 'done' };
     }
-    store.timing.value = timingOf(seconds, particles, request.kind === 'relax' ? request.steps : 0);
+    store.timing.value = timingOf(seconds, particles, job.kind === 'relax' ? job.steps : 0);
     if (fits && particles > 0) this.picture.fit();
   }
 

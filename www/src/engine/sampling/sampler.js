@@ -1,19 +1,18 @@
 /**
- * Decides which runs the worker makes: turns requests into jobs, tracks the jobs by the worker's messages, and updates
- * the signals.
+ * Decides which runs the worker makes: turns the state into jobs, tracks their runs by the worker's messages, and
+ * updates the signals.
  *
  * @module
  */
 import { batch } from '@preact/signals-core';
-import { clampSettings } from '../share/state.js';
+import { TYPING_MS } from '../constants.js';
+import { clampSettings, completeSettings, fieldRequest, validSetting } from '../share/state.js';
+import { change, description } from '../store.js';
 import { SamplingClient } from './client.js';
-import { Pace, sizeOfRun } from './cost.js';
 import { loadNotice, restartNotice, safeModeNotice } from './faults.js';
 import { KINDS } from './kinds.js';
 import {
   askedFor,
-  awaitsParticles,
-  awaitsWorker,
   backdropOf,
   IDLE,
   inputOf,
@@ -21,41 +20,49 @@ import {
   reduce,
   restoringOf,
   runningOf,
+  statusOf,
   tookPlace,
   trialOf,
 } from './ledger.js';
+import { Drag, Pace, paceKey, samplingSeconds, sizeOfRun } from './pace.js';
 import { Presenter } from './presenter.js';
 
 /**
- * @import { Description, FieldAnswer, FieldOk } from '../types.js'
+ * @import { Description, FieldAnswer, FieldOk, SampleKind } from '../types.js'
  * @import {
- *   ColumnsMessage, Crash, DoneMessage, FromWorker, Job, LedgerEvent, RunRequest, SampleRequest, SamplerOptions,
- *   Ticket,
+ *   Change, ColumnsMessage, Crash, DoneMessage, FromWorker, Job, LedgerEvent, Run, SampleJob, SamplerOptions,
  * } from './types.js'
  */
 
+/** Pause in a drag after which the full run starts, even if the control did not report its release. */
+const REST_MS = 250;
+
 export class Sampler {
   #columns;
+  #models;
   #presenter;
   #onReady;
-  #onAsk;
-  #whole;
   #nowMs;
-  #pace;
-  /** The job whose field was made last, or is being made. */
+  /** By {@link paceKey}. @type {Map<string, Pace>} */
+  #paces = new Map();
+  #drag = new Drag(-Infinity);
+  /** The run whose field was made last, or is being made. */
   #made = 0;
+  /**
+   * Timer for the run that starts when a control or the typing pauses.
+   * @type {ReturnType<typeof setTimeout> | undefined}
+   */
+  #timer;
+  #isTyping = false;
 
   /** @param {SamplerOptions} options */
-  constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
+  constructor({ store, columns, picture, models, spawn, onReady, clock }) {
     this.store = store;
     this.#columns = columns;
+    this.#models = models;
     this.#presenter = new Presenter({ store, columns, picture });
     this.#onReady = onReady;
-    this.#onAsk = onAsk;
-    this.#whole = whole;
-    this.solved = solved;
     this.#nowMs = clock ? clock.now : () => performance.now();
-    this.#pace = new Pace(this.#nowMs);
     this.client = new SamplingClient({
       spawn,
       clock,
@@ -79,26 +86,147 @@ export class Sampler {
   }
 
   close() {
+    this.forgetLater();
+    this.#models.cancel();
     this.client.close();
   }
 
-  // ---- requests
-  // -------------------------------------------------------------------------------------------------------
+  // ---- what the state asks for
+  // ------------------------------------------------------------------------------------------
 
-  /** @param {SampleRequest} request */
-  sample(request) {
+  /**
+   * Returns the job that samples the current state, or the surface that is being pulled.
+   * @param {Change} [change]
+   * @returns {SampleJob}
+   */
+  #jobOf({ kind = 'change', pulled, settings: given } = {}) {
+    const about = description(this.store);
+    const state = this.#models.present();
+    const isMesh = this.store.meshing.value !== null;
+    const own = completeSettings(about, isMesh ? { ...state.settings, method: 'refined' } : state.settings);
+    const settings = given ?? own;
+    const follows = state.view.flow && (kind === 'move' || kind === 'rest');
+    return {
+      kind,
+      field: { ...fieldRequest(state, about, this.#models.key()), ...pulled },
+      settings,
+      following: follows ? [settings] : [],
+    };
+  }
+
+  /** Samples the current state. @param {Change} [change] */
+  resample(change = {}) {
+    if (!this.#begin(change.kind)) return;
+    const job = this.#jobOf(change);
+    // The answer tells when a pull has ended.
+    if (change.pulled) this.submit(job);
+    else this.sample(job);
+  }
+
+  /**
+   * Samples the current state during a drag, coarsely if necessary, and fully once the drag pauses.
+   * @param {Change['pulled']} [pulled]
+   */
+  resampleLive(pulled) {
+    if (!this.#begin()) return;
+    this.sampleLive(this.#jobOf({ pulled }), this.#diagonal());
+    this.#timer = setTimeout(() => this.sample(this.#jobOf({ kind: 'rest', pulled })), REST_MS);
+  }
+
+  /**
+   * Samples another surface. A model that is loading for another choice is cancelled.
+   * @param {SampleKind} [kind]
+   */
+  choose(kind) {
+    this.store.loadingError.value = null;
+    if (this.#models.orderKey !== this.#models.key()) this.#models.cancel();
+    this.resample({ kind });
+  }
+
+  /** Samples a typed formula once the typing pauses, unless another run comes first. */
+  chooseTyped() {
+    clearTimeout(this.#timer);
+    this.#setTyping(true);
+    this.#timer = setTimeout(() => this.choose('trial'), TYPING_MS);
+  }
+
+  /** Cancels a run that is waiting for a pause. */
+  forgetLater() {
+    clearTimeout(this.#timer);
+    this.#setTyping(false);
+  }
+
+  /** @param {boolean} isTyping */
+  #setTyping(isTyping) {
+    this.#isTyping = isTyping;
+    this.#attend();
+  }
+
+  /**
+   * Whether the state can be sampled now. If its model is not solved yet, solving begins.
+   * @param {SampleKind} [kind]
+   */
+  #begin(kind) {
+    this.forgetLater();
+    this.store.spot.value = null;
+    if (!this.store.description.value) return false;
+    if (!this.#models.ready()) {
+      void this.#models.load(kind);
+      return false;
+    }
+    this.#models.settled();
+    return true;
+  }
+
+  /** Returns the diagonal of the current clip box. */
+  #diagonal() {
+    const { state, field } = this.store;
+    const bounds = state.value.bounds ?? field.value?.bounds;
+    return bounds ? Math.hypot(...bounds.max.map((v, k) => v - bounds.min[k])) : 0;
+  }
+
+  /**
+   * Asks the user to confirm a run with more particles than the limit.
+   * @param {number} predicted
+   * @param {SampleJob} job
+   */
+  #askSize(predicted, job) {
+    const { store } = this;
+    const limit = Number(job.settings.max_particles);
+    const raised = Math.ceil(predicted * description(store).limits.count_room);
+    store.notice.value = {
+      id: 'size',
+      kind: 'warn',
+      text: `About ${predicted.toLocaleString('en')} particles would be needed; the limit is ${limit.toLocaleString('en')}.`,
+      action: {
+        label: 'Sample them anyway',
+        run: () => {
+          store.notice.value = null;
+          const maxParticles = validSetting(description(store), 'max_particles', raised) ?? limit;
+          change(store, { settings: { ...store.state.value.settings, max_particles: maxParticles } });
+          this.sample(this.#jobOf({ kind: 'agreed' }));
+        },
+      },
+    };
+  }
+
+  // ---- jobs
+  // -------------------------------------------------------------------------------------------------------------
+
+  /** @param {SampleJob} job */
+  sample(job) {
     const running = runningOf(this.ledger);
-    // A second request with the same input would only restart the run, so it is ignored while the first one runs. It is
+    // A second job with the same input would only restart the run, so it is ignored while the first one runs. It is
     // accepted after a fault, to clear the fault, and if the run only restores a surface, so that this surface becomes
     // the requested one.
     const same =
       running &&
       running.id > this.ledger.stoppedUpTo &&
-      !KINDS[running.request.kind].isLive &&
-      !KINDS[running.request.kind].restores &&
-      inputOf(running.request) === inputOf(request);
-    if (!same || KINDS[request.kind].isLive || this.store.fieldError.value) this.submit(request);
-    else if (request.kind !== 'trial') this.commit();
+      !KINDS[running.job.kind].isLive &&
+      !KINDS[running.job.kind].restores &&
+      inputOf(running.job) === inputOf(job);
+    if (!same || KINDS[job.kind].isLive || this.store.fieldError.value) this.submit(job);
+    else if (job.kind !== 'trial') this.commit();
   }
 
   /** Ends the trial of a formula, which stays. */
@@ -109,14 +237,21 @@ export class Sampler {
   /**
    * Lets the particles follow the surface while a control is dragged. If they cannot, a run starts, coarse if
    * necessary.
-   * @param {SampleRequest} request @param {number} diagonal  of the clip box
+   * @param {SampleJob} job @param {number} diagonal  of the clip box
    */
-  sampleLive(request, diagonal) {
-    const { coarse, settings } = this.#pace.plan(request, diagonal);
-    const { value: description } = this.store.description;
-    const valid = description ? clampSettings(description, settings) : settings;
-    const following = [request.settings, valid];
-    this.submit({ ...request, kind: coarse ? 'sketch' : 'live', settings: valid, following });
+  sampleLive(job, diagonal) {
+    this.#drag = this.#drag.requested(this.#nowMs());
+    const { coarse, settings } = this.#paceOf(job).plan(job.settings, diagonal);
+    const valid = clampSettings(description(this.store), settings);
+    this.submit({ ...job, kind: coarse ? 'sketch' : 'live', settings: valid, following: [job.settings, valid] });
+  }
+
+  /** @param {SampleJob} job @returns {Pace} */
+  #paceOf(job) {
+    const key = paceKey(job);
+    const pace = this.#paces.get(key) ?? new Pace();
+    this.#paces.set(key, pace);
+    return pace;
   }
 
   /**
@@ -124,54 +259,41 @@ export class Sampler {
    * @param {number} steps
    */
   relax(steps) {
-    if (this.store.busy.value) return;
+    if (this.store.status.value === 'sampling') return;
     const { held } = this.ledger;
     if (held > 0 && this.#columns.count > 0) {
       this.submit({ kind: 'relax', of: held, steps });
     } else {
-      const request = this.#whole();
+      const job = this.#jobOf();
       const done = this.store.progress.value.relax_steps;
-      this.sample({ ...request, settings: { ...request.settings, relax_steps: done + steps } });
+      this.sample({ ...job, settings: { ...job.settings, relax_steps: done + steps } });
     }
   }
 
   /** Stops everything requested so far. Nothing starts until the next request. */
   stop() {
-    if (this.store.busy.value) this.client.post({ type: 'stop' });
+    this.forgetLater();
+    this.#models.cancel();
+    if (this.store.status.value === 'sampling') this.client.post({ type: 'stop' });
     this.#happened({ type: 'stopped' });
   }
 
-  /** Completes the surface that stays on the page, with its report, after a failed request. */
+  /** Completes the surface that stays on the page, with its report, after a failed run. */
   #settle() {
-    const request = restoringOf(this.ledger);
-    if (request) this.submit(request);
+    const job = restoringOf(this.ledger);
+    if (job) this.submit(job);
   }
 
-  /** Sends a request to the worker, where the latest one waits for the running job. @param {RunRequest} request */
-  submit(request) {
-    // In safe mode nothing is sent. The state keeps the request, which is sent when the sampler is restarted.
+  /** Sends a job to the worker, where the latest one waits for the running one. @param {Job} job */
+  submit(job) {
+    // In safe mode nothing is sent. The state has what was asked for, which is sampled when the sampler is restarted.
     if (!this.client.isThere) return this.#happened({ type: 'lost' });
     const id = this.ledger.lastId + 1;
-    this.client.post({ type: 'job', job: this.#jobOf(id, request) });
-    this.#happened({ type: 'sent', request, nowMs: this.#nowMs() });
-    if (request.kind === 'relax') this.#presenter.begin(id, request);
-  }
-
-  /** @param {number} id @param {RunRequest} request @returns {Job} */
-  #jobOf(id, request) {
-    if (request.kind === 'relax') return { ...request, id };
-    const { kind, field, settings, following = [] } = request;
-    const solved = field.points === undefined ? undefined : this.solved(field.points);
-    return {
-      kind,
-      id,
-      field,
-      settings,
-      following,
-      points: solved && 'field' in solved ? solved : null,
-      file: solved && 'file' in solved ? solved.file : null,
-      askAbove: KINDS[kind].isUnasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
-    };
+    const points = job.kind === 'relax' ? undefined : job.field.points;
+    const given = (points === undefined ? null : this.#models.solved(points)) ?? null;
+    this.client.post({ type: 'job', id, job, given });
+    this.#happened({ type: 'sent', job, nowMs: this.#nowMs() });
+    if (job.kind === 'relax') this.#presenter.begin(id, job);
   }
 
   /** @param {LedgerEvent} event */
@@ -180,11 +302,12 @@ export class Sampler {
     this.#attend();
   }
 
-  /** Updates the busy flags: the page is busy until the particles have arrived, the worker until the report has. */
+  /** Updates what is under way, for the page and for whoever watches the worker. */
   #attend() {
-    this.store.busy.value = awaitsParticles(this.ledger);
-    this.store.trial.value = trialOf(this.ledger);
-    this.client.setBusy(awaitsWorker(this.ledger));
+    const status = statusOf(this.ledger);
+    this.store.status.value = status;
+    this.store.trial.value = this.#isTyping ? 'typing' : trialOf(this.ledger);
+    this.client.setBusy(status !== 'rest');
   }
 
   // ---- what the worker sends
@@ -201,7 +324,7 @@ export class Sampler {
         return this.#making(message.id, message.fraction);
       case 'dropped':
         this.#happened(message);
-        if (!runningOf(this.ledger)) this.#presenter.idle({ phase: 'done' });
+        if (this.store.status.value === 'rest') this.#presenter.idle({ phase: 'done' });
         return this.#dim();
       default:
     }
@@ -241,7 +364,7 @@ export class Sampler {
    */
   #making(id, fraction) {
     const asked = askedFor(this.ledger, id);
-    if (!asked || KINDS[asked.request.kind].isLive) return;
+    if (!asked || KINDS[asked.job.kind].isLive) return;
     this.#made = id;
     this.#presenter.making(asked, fraction);
   }
@@ -260,10 +383,10 @@ export class Sampler {
 
   /** @param {number} id @param {FieldAnswer} answer */
   #fieldAnswered(id, answer) {
-    const request = askedFor(this.ledger, id)?.request;
-    if (!request || request.kind === 'relax') return;
+    const job = askedFor(this.ledger, id)?.job;
+    if (!job || job.kind === 'relax') return;
     batch(() => {
-      if (answer.ok) this.#fieldAccepted(id, request, answer);
+      if (answer.ok) this.#fieldAccepted(id, job, answer);
       else this.#fieldRefused(id, answer);
     });
   }
@@ -271,20 +394,20 @@ export class Sampler {
   /**
    * Makes the job the current one. Messages of the previous job are ignored from now on.
    * @param {number} id
-   * @param {SampleRequest} request
+   * @param {SampleJob} job
    * @param {FieldOk} answer
    */
-  #fieldAccepted(id, request, answer) {
+  #fieldAccepted(id, job, answer) {
     this.#happened({ type: 'accepted', id, bounds: answer.bounds });
-    this.#presenter.begin(id, request);
-    if (this.#isTold(request)) this.#presenter.field(request.field, answer, KINDS[request.kind].restores);
-    if (answer.grip && !KINDS[request.kind].isLive && request.kind !== 'rest') this.store.dragging.value = false;
+    this.#presenter.begin(id, job);
+    if (this.#isTold(job)) this.#presenter.field(job.field, answer, KINDS[job.kind].restores);
+    if (answer.grip && !KINDS[job.kind].isLive && job.kind !== 'rest') this.store.dragging.value = false;
   }
 
   /**
    * Returns whether the page describes the field of this run. While the formula has a mistake, it describes the last
    * valid surface instead.
-   * @param {SampleRequest} request
+   * @param {SampleJob} job
    */
   #isTold({ kind }) {
     return !KINDS[kind].restores || (kind !== 'backdrop' && this.store.fieldError.value !== null);
@@ -293,12 +416,12 @@ export class Sampler {
   /**
    * Receives the box of a run, which is found after its field was accepted.
    * @param {FieldOk} answer
-   * @param {Ticket} run
+   * @param {Run} run
    */
-  #boxFound(answer, { request }) {
-    if (request.kind === 'relax') return;
+  #boxFound(answer, { job }) {
+    if (job.kind === 'relax') return;
     this.#happened({ type: 'boxed', bounds: answer.bounds });
-    if (this.#isTold(request)) this.#presenter.box(answer);
+    if (this.#isTold(job)) this.#presenter.box(answer);
   }
 
   /** @param {number} id @param {Extract<FieldAnswer, {ok: false}>} answer */
@@ -315,7 +438,7 @@ export class Sampler {
     this.#presenter.dim(this.ledger.astray);
   }
 
-  /** @param {ColumnsMessage} message @param {Ticket} run */
+  /** @param {ColumnsMessage} message @param {Run} run */
   #takeColumns(message, run) {
     const drawn = () => this.client.post({ type: 'drawn', id: message.id });
     // An empty range does not replace the previous surface. The end of the run shows whether there is a new one.
@@ -323,54 +446,55 @@ export class Sampler {
     if (run.stage === 'seeding') {
       this.#happened({ type: 'particles', description: this.store.description.value });
       this.#presenter.first(run);
-      if (run.request.kind !== 'relax') this.#dim();
+      if (run.job.kind !== 'relax') this.#dim();
     }
     this.#presenter.particles(message, run, drawn);
   }
 
-  /** @param {DoneMessage} message @param {Ticket} run */
+  /** @param {DoneMessage} message @param {Run} run */
   #ended(message, run) {
     const { outcome, progress, reportFollows } = message;
-    const { request } = run;
+    const { job } = run;
     const particles = progress?.particles ?? 0;
     const surface = tookPlace(outcome, particles);
     batch(() => {
       this.#happened({ type: 'done', outcome, particles, reportFollows, nowMs: this.#nowMs() });
       if (surface) {
         this.#presenter.end(message, run, particles);
-        if (request.kind !== 'backdrop') this.#learn(message, run, particles);
+        if (job.kind !== 'backdrop') this.#learn(message, run, particles);
       } else {
         this.#presenter.failure(message);
       }
       if (!surface || particles === 0) this.#dim();
     });
-    if (request.kind === 'relax') return;
-    const behind = surface && particles === 0 && request.kind !== 'backdrop' ? backdropOf(this.ledger) : null;
+    if (job.kind === 'relax') return;
+    const behind = surface && particles === 0 && job.kind !== 'backdrop' ? backdropOf(this.ledger) : null;
     if (behind) this.submit(behind);
-    if (outcome === 'ask') this.#onAsk(message.predicted, request);
+    if (outcome === 'ask') this.#askSize(message.predicted, job);
     // After a drag that ended with an error no full run follows.
-    const { isLive, restores } = KINDS[request.kind];
+    const { isLive, restores } = KINDS[job.kind];
     if ((!surface && !restores) || (isLive && this.store.fieldError.value)) this.#settle();
   }
 
   /**
-   * Updates the cost model from a finished run.
+   * Updates the pace and the drag from a finished run.
    * @param {DoneMessage} message
-   * @param {Ticket} run
+   * @param {Run} run
    * @param {number} particles
    */
-  #learn({ seconds, progress, followed }, run, particles) {
+  #learn({ seconds, progress, followed }, { job, sinceMs }, particles) {
     const { store } = this;
-    const sampled = run.request.kind === 'relax' ? (this.accepted ?? this.#whole()) : run.request;
-    const size = sizeOfRun(sampled.settings, progress?.radius ?? 0, store.field.value?.bounds);
-    const drag = this.#pace.record(run, sampled, {
-      seconds,
-      particles,
-      relax_steps: progress?.relax_step ?? 0,
-      size,
-      followed,
-    });
-    if (drag) store.lastDrag.value = drag;
+    if (job.kind === 'relax') return;
+    const pace = this.#paceOf(job);
+    // A run that ended at its coarse level, or whose particles followed, does not tell the cost of a whole run.
+    const isWhole = !followed && !(job.kind === 'sketch' && job.settings.method === 'refined');
+    const size = sizeOfRun(job.settings, progress?.radius ?? 0, store.field.value?.bounds);
+    if (isWhole) pace.record({ seconds, particles, relax_steps: progress?.relax_step ?? 0, size });
+    if (!KINDS[job.kind].isLive) return;
+    const latencyMs = this.#nowMs() - sinceMs;
+    // The rest of the latency is drawing: a slow graphics device delays every message.
+    pace.recordPicture(particles, latencyMs - samplingSeconds(seconds) * 1e3);
+    store.lastDrag.value = this.#drag.shown(latencyMs, particles, job.kind === 'sketch' && !followed);
   }
 
   // ---- when the worker fails
@@ -383,7 +507,7 @@ export class Sampler {
 
   /**
    * Drops all runs, because the worker is gone.
-   * @returns {SampleRequest | null} the run that is lost with the worker
+   * @returns {SampleJob | null} the run that is lost with the worker
    */
   #forget() {
     const lost = lostRun(this.ledger, this.store.description.value);
@@ -433,6 +557,6 @@ export class Sampler {
     this.store.notice.value = null;
     this.#happened({ type: 'revived' });
     this.client.revive();
-    if (this.store.description.value) this.submit(this.#whole());
+    if (this.store.description.value) this.submit(this.#jobOf());
   }
 }

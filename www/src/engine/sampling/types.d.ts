@@ -25,27 +25,28 @@ import type {
   SampleKind,
   Seconds,
   Settings,
+  State,
   ToldProgress,
 } from '../types.js';
 
 export type Mesh = import('../types.js').Mesh;
 /**
- * A request as the worker has it. It samples the field from the start, in the way of its kind (see `kinds.js`). The
- * particles may follow the surface instead in the settings of `following`; with `isClosed` they are then neither born
- * nor die. A job with more than `askAbove` expected particles is returned without running. `points` is the solved model
- * that `field` names, and `file` the file of an image or a mesh.
+ * Samples a field from the start, in the way of the job's kind (see `kinds.js`), with complete settings. The particles
+ * may follow the surface instead in the settings of `following`.
  */
-export interface SampleJob extends SampleRequest {
-  id: number;
-  points: Pick<Solved, 'field' | 'info'> | null;
-  file?: KeyedFile | null;
-  following: Settings[];
-  isClosed?: boolean;
-  askAbove: number;
+export interface SampleJob {
+  kind: SampleKind;
+  field: FieldRequest;
+  settings: Settings;
+  following?: Settings[];
 }
-/** Relaxes the particles that the worker holds. They must be those of job `of`. */
-export type RelaxJob = RelaxRequest & { id: number };
+/** Relaxes the particles that the worker holds. They must be those of run `of`. */
+export type RelaxJob = { kind: 'relax'; of: number; steps: number };
 export type Job = SampleJob | RelaxJob;
+/** What the field of a job names: a solved model, or the file of an image or a mesh. */
+export type Given = Pick<Solved, 'field' | 'info'> | { file: KeyedFile };
+/** A job on its way through the worker, under the number of its run. */
+export type Numbered = { id: number; job: Job; given: Given | null };
 /**
  * A `job` takes the place of the one that waits, and replaces the running one once the core has accepted its field
  * (see `jobs.js`). If the field is refused, the running job continues. `stop` ends every job sent before it.
@@ -62,7 +63,7 @@ export type Job = SampleJob | RelaxJob;
 export type ToWorker =
   | { type: 'core'; module: WebAssembly.Module }
   | { type: 'no_core'; fault: LoadFault; message: string }
-  | { type: 'job'; job: Job }
+  | ({ type: 'job' } & Numbered)
   | { type: 'curvature'; on: boolean }
   | { type: 'mesh'; on: boolean }
   | { type: 'export'; request: number; file: Partial<FileRequest> }
@@ -81,7 +82,7 @@ export type PlacedColumns = { positions: Float32Array; normals: Float32Array; ra
 /** Figures, places and columns as those of a report. */
 export type PlacedMeasures = Measures & { energy: Float32Array; valence: Uint8Array };
 /**
- * How a job ended. `refused`: the core rejected the settings; `ask`: more particles than `askAbove` are expected;
+ * How a job ended. `refused`: the core rejected the settings; `ask`: more particles than allowed are expected;
  * `lost`: the worker no longer holds the particles to relax. A job whose field was refused ends with that answer. A
  * job that is replaced ends without a message.
  */
@@ -146,15 +147,6 @@ export type FromWorker =
   | { type: 'measured'; request: number; measures: PlacedMeasures }
   | { type: 'measured'; request: number; error: FieldFault }
   | { type: 'crashed'; id: number; message: string; stack: string };
-/** A request to sample: `settings` are complete, and `following` is as in {@link SampleJob}. */
-export interface SampleRequest {
-  kind: SampleKind;
-  field: FieldRequest;
-  settings: Settings;
-  following?: Settings[];
-}
-export type RelaxRequest = { kind: 'relax'; of: number; steps: number };
-export type RunRequest = SampleRequest | RelaxRequest;
 /**
  * The stage of a run. `seeding`: none of its particles is on the page; `growing`: some are; `measuring`: all are,
  * and the report is pending; `over`: the run has ended.
@@ -164,21 +156,21 @@ export type Stage = 'seeding' | 'growing' | 'measuring' | 'over';
  * What the page knows of a job that it sent to the worker. `bounds` is the clip box of its field, known once the field
  * is accepted, and final once the box is found. `sinceMs` is when it was sent, or when the job before it ended.
  */
-export type Ticket = { id: number; request: RunRequest; bounds: Bounds | null; stage: Stage; sinceMs: number };
-export type Shown = { request: SampleRequest; reported: boolean };
-/** What the page knows of the jobs: those asked wait at the worker, and one is current. */
+export type Run = { id: number; job: Job; bounds: Bounds | null; stage: Stage; sinceMs: number };
+/** The job whose particles are on the page, and whether their report has arrived. */
+export type Shown = { job: SampleJob; reported: boolean };
+/** What the page knows of its runs: those asked wait at the worker, and one is current. */
 export interface Ledger {
-  /** id of the job sent last, 0 before the first */
+  /** id of the run sent last, 0 before the first */
   lastId: number;
-  /** jobs whose field has not been answered yet, in the order sent */
-  asked: readonly Ticket[];
-  /** the job whose messages count: the last one whose field was accepted */
-  current: Ticket | null;
-  /** the job whose particles the worker holds, 0 for none */
+  /** runs whose field has not been answered yet, in the order sent */
+  asked: readonly Run[];
+  /** the run whose messages count: the last one whose field was accepted */
+  current: Run | null;
+  /** the run whose particles the worker holds, 0 for none */
   held: number;
   /** the last sampling that the core accepted */
-  accepted: SampleRequest | null;
-  /** the request whose particles are on the page, and whether their report has arrived */
+  accepted: SampleJob | null;
   shown: Shown | null;
   /**
    * The surface that stood before that of a trial, a formula that is still being typed. It comes back if what is typed
@@ -187,9 +179,9 @@ export interface Ledger {
   stood: Shown | null;
   /** whether the surface on the page differs from the one requested last */
   astray: boolean;
-  /** when a job ended last */
+  /** when a run ended last */
   endedMs: number;
-  /** id of the last job sent before a stop; no job up to it continues, and none follows from it */
+  /** id of the last run sent before a stop; no run up to it continues, and none follows from it */
   stoppedUpTo: number;
   /** the input on which the worker crashed last, from {@link inputOf} */
   crashedInput: string;
@@ -200,7 +192,7 @@ export interface Ledger {
  * which is sent `again` or given up.
  */
 export type LedgerEvent =
-  | { type: 'sent'; request: RunRequest; nowMs: number }
+  | { type: 'sent'; job: Job; nowMs: number }
   | { type: 'accepted'; id: number; bounds: Bounds }
   | { type: 'boxed'; bounds: Bounds }
   | { type: 'refused'; id: number }
@@ -214,14 +206,16 @@ export type LedgerEvent =
   | { type: 'crashed'; input: string; again: boolean }
   | { type: 'revived' };
 
-/** The events of the client. */
-export interface ClientEvents {
+/** The worker's events, as its client passes them on. */
+export interface ClientOptions {
+  spawn: () => WorkerLike;
   onMessage: (message: FromWorker) => void;
   /** the old worker is gone and the new one is loading */
   onRestart: (crash: Crash) => void;
   /** no worker until `revive()` */
   onSafeMode: (crash: Crash) => void;
   onLoadFailed: (text: string) => void;
+  clock?: Clock;
 }
 export interface Env extends WorkerEnv<FromWorker> {
   interrupt: () => 'stop' | 'replace' | null;
@@ -235,19 +229,10 @@ export interface Env extends WorkerEnv<FromWorker> {
 /** The part of a job's surroundings that the work after a run uses. */
 export type AfterEnv = Pick<Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>;
 /**
- * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page
- * has.
+ * What the worker holds: the id of the run whose particles the core has, 0 for none, and of the run whose mesh the page
+ * has. `gaveUp`: the joining of the mesh over the particles `meshed` was stopped.
  */
-/** `gaveUp`: the joining of the mesh over the particles `meshed` was stopped */
 export type Memory = { held: number; meshed: number; gaveUp: boolean };
-/** The measurements of a finished run. */
-export type Measured = {
-  seconds: Seconds;
-  particles: number;
-  relax_steps: number;
-  size: number;
-  followed: boolean;
-};
 /** The part of the viewer that the presenter uses. */
 export interface PictureLike {
   /** a new surface replaces the old one */
@@ -266,28 +251,39 @@ export interface PictureLike {
 export type WorkerLike = import('../bundle/types.js').WorkerLike<ToWorker, FromWorker>;
 export type Crash = { cause: 'panic' | 'hang'; message: string; stack: string; restarts: number };
 export type Clock = Timers & { now: () => number };
+/** What the state may name in the place of a formula: models, which are solved first, and files, which are opened. */
+export interface Models {
+  /** the key of the state's model or file; undefined for a formula */
+  key: () => string | undefined;
+  /** whether the state can be sampled now */
+  ready: () => boolean;
+  /** returns the state, but with the previous surface while its model is loading */
+  present: () => State;
+  /** starts solving the state's model and samples it once it is solved */
+  load: (kind?: SampleKind) => void;
+  /** the state's surface is now being sampled */
+  settled: () => void;
+  solved: (key: string) => Given | undefined;
+  /** of the model that is being solved; else empty */
+  orderKey: string;
+  cancel: () => void;
+}
 export interface SamplerOptions {
   store: Store;
   columns: Columns;
   picture: PictureLike;
+  models: Models;
   spawn: () => WorkerLike;
   /** called when the description has arrived for the first time */
   onReady: () => void;
-  onAsk: (predicted: number, request: SampleRequest) => void;
-  /** returns the full run of the present state */
-  whole: () => SampleRequest;
-  /** returns the solved model that a field names */
-  solved?: (key: string) => Solved | { file: KeyedFile } | undefined;
   clock?: Clock;
 }
-export interface SupervisorOptions {
-  spawn: () => WorkerLike;
-  onMessage: (message: FromWorker) => void;
-  /** the old worker is gone and the new one is loading */
-  onRestart: (crash: Crash) => void;
-  /** no worker until `revive()` */
-  onSafeMode: (crash: Crash) => void;
-  /** the worker's script did not load */
-  onLoadError: (message: string) => void;
-  clock?: Clock;
+/**
+ * What a run differs in from that of the state. `settings` stand in the place of the state's; `pulled`: points that the
+ * surface is to pass through, and the parameters that are changed for it.
+ */
+export interface Change {
+  kind?: SampleKind;
+  settings?: Settings;
+  pulled?: Required<Pick<FieldRequest, 'parameters' | 'pins'>>;
 }

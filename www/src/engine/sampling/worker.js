@@ -72,8 +72,8 @@ function tellMaking(id, fraction) {
   post({ type: 'making', id, fraction });
 }
 const jobs = new Jobs(post, nowMs, {
-  isReady: (ours, { id, file, field }) =>
-    !file || opener.isReady(ours, file, field, { tell: (share) => tellMaking(id, share), whenReady: prepared }),
+  isReady: (ours, id, file, field) =>
+    opener.isReady(ours, file, field, { tell: (share) => tellMaking(id, share), whenReady: prepared }),
   setField: (ours, file, field) => opener.setField(ours, file, field),
   stop: () => opener.stop(),
 });
@@ -106,11 +106,12 @@ async function pump() {
   while (core && !dead) {
     const ours = core;
     try {
-      const job = jobs.take(ours);
-      if (job) {
+      const next = jobs.take(ours);
+      if (next) {
         undrawn = 0;
-        if (job.kind !== 'relax') remesh.isIt = job.file?.as === 'mesh';
-        await runJob(ours, job, surroundings(ours), memory);
+        const { job, given } = next;
+        if (job.kind !== 'relax') remesh.isIt = given !== null && 'file' in given && given.file.as === 'mesh';
+        await runJob(ours, next, surroundings(ours), memory);
       } else if (!(await serve(ours))) {
         break;
       }
@@ -185,7 +186,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       failed(data.fault, data.message);
       break;
     case 'job':
-      jobs.add(data.job);
+      jobs.add(data);
       void pump();
       break;
     case 'curvature':
@@ -263,7 +264,7 @@ async function open({ request, file }) {
   }
 }
 
-// Shows the supervisor that the worker is alive while the core loads.
+// Shows the page that the worker is alive while the core loads.
 const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
 
 /** @param {LoadFault} fault @param {string} message */

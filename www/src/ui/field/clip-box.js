@@ -128,7 +128,7 @@ function createCut(engine) {
   // During a run the previous message stays.
   let last = cutOf(engine.report.peek(), engine.enlargement());
   const cut = computed(() => {
-    if (engine.empty.value) last = null;
+    if (engine.result.value === 'none') last = null;
     else if (engine.report.value) last = cutOf(engine.report.value, engine.enlargement());
     return last;
   });

@@ -100,7 +100,7 @@ class FormulaInput {
     });
     live(this.holder, () => {
       void shown.value;
-      void engine.typing.value;
+      void engine.trial.value;
       this.#render();
     });
   }
@@ -148,7 +148,7 @@ class FormulaInput {
     const fault = this.#fault.peek();
     const text = editor.text();
     // Words count as a formula while being typed; names are looked up only once the text has been read.
-    const isRead = !this.#engine.typing.peek();
+    const isRead = this.#engine.trial.peek() !== 'typing';
     const meant = isRead ? meantBy(this.#description, text) : [];
     const view = describeFault(text, text === this.#faulty ? fault : null, meant);
     holder.classList.toggle('has-fault', view?.tone === 'fault');
@@ -269,14 +269,14 @@ function createUnchanging(engine) {
   // While the sampler runs, the last result for this formula stays.
   let [kind, formula] = ['', ''];
   return h('p', { class: 'quiet unchanging' }, () => {
-    const { field, fieldError, empty, busy, report, columns } = engine;
+    const { field, fieldError, result, status, report, columns } = engine;
     const { periods, model } = field.value ?? {};
-    if (!periods || model || fieldError.value || empty.value) return '';
+    if (!periods || model || fieldError.value || result.value === 'none') return '';
     const without = ['x', 'y', 'z'].filter((_, k) => periods[k] === 0);
     if (without.length === 0 || without.length === 3) return '';
     if (field.value?.formula !== formula) kind = '';
     formula = field.value?.formula ?? '';
-    if (report.value && !busy.value) kind = kindOf(columns);
+    if (report.value && status.value !== 'sampling') kind = kindOf(columns);
     return `No ${without.join(', ')}${kind && `: ${kind}`}`;
   });
 }

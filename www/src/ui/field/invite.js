@@ -28,7 +28,11 @@ export function inviteToDrag(engine) {
   const shown = computed(() => (names.value.includes(invited.value ?? '') ? invited.value : null));
   if (was.peek() || matchMedia('(prefers-reduced-motion: reduce)').matches) return shown;
   const has = computed(
-    () => engine.report.value !== null && engine.reveal.value === null && !engine.busy.value && engine.frame.value > 0,
+    () =>
+      engine.report.value !== null &&
+      engine.reveal.value === null &&
+      engine.status.value !== 'sampling' &&
+      engine.frame.value > 0,
   );
   let hasGrown = false;
   const end = effect(() => {
@@ -62,7 +66,7 @@ export function inviteToDrag(engine) {
       const share = (nowMs - fromMs) / MOTION_MS;
       if (shown.peek() === null || share >= 1) return of.resetParameter(name);
       // As when a parameter is played, a run longer than a frame delays the next step.
-      if (!of.busy.peek()) {
+      if (of.status.peek() !== 'sampling') {
         const place = value + way * Math.sin(Math.PI * Math.max(0, share)) ** 2;
         of.setParameter(name, snap({ min, max, step }, place), { live: true });
       }

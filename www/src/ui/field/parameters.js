@@ -40,7 +40,7 @@ export function createParameters(engine, { motion, pins }) {
       hidden: () =>
         (!canGrab(engine.field.value) && !engine.field.value?.parameters.length) ||
         // If f does not depend on x, y or z, no slider makes a surface.
-        (engine.empty.value && engine.progress.value.stop_reason === 'constant'),
+        (engine.result.value === 'none' && engine.progress.value.stop_reason === 'constant'),
     },
     h(
       'div',

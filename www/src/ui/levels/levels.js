@@ -96,7 +96,7 @@ export function createLevels(engine) {
     const [x, y, z] = columns.normals;
     if (isBack || isOutOfSight(columns, state.peek().view.camera, to)) engine.turnTo([x, y, z]);
   }
-  const some = computed(() => table.value.count > 0 && !engine.empty.value);
+  const some = computed(() => table.value.count > 0 && engine.result.value !== 'none');
   /** @type {Track} */
   const track = {
     name: 'level',

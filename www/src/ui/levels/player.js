@@ -16,7 +16,7 @@ export class Player {
     this.speed = 1;
     // Playback ends when a run begins or ends.
     effect(() => {
-      void engine.busy.value;
+      void engine.status.value;
       this.#pause();
     });
   }

@@ -147,7 +147,7 @@ function restore(body, engine, { levels, say }) {
   });
   const rests = computed(() => {
     const { phase, particles } = engine.progress.value;
-    return !engine.busy.value && engine.loading.value === null && phase === 'done' && particles > 0;
+    return engine.status.value !== 'sampling' && engine.loading.value === null && phase === 'done' && particles > 0;
   });
   live(body, () => {
     // Reading a link starts a run at once.

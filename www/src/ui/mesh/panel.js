@@ -59,7 +59,9 @@ const isOfFile = ({ field: { value: field } }) => givenOf(field) !== null;
 export function createMeshPanel(engine, { toast, close, print }) {
   /** @type {import('../../engine/types.js').Signal<Use>} */
   const use = signal('print');
-  const made = computed(() => (engine.busy.value || engine.empty.value ? null : engine.mesh.value));
+  const made = computed(() =>
+    engine.status.value === 'sampling' || engine.result.value === 'none' ? null : engine.mesh.value,
+  );
   const isPrint = () => use.value === 'print';
   const next = () => nextOf(made.value, isOfFile(engine));
   const lines = viewLines(engine);
@@ -67,8 +69,11 @@ export function createMeshPanel(engine, { toast, close, print }) {
   const ofFile = () => (isPrint() ? { scale: print.scale() ?? 1, unit: 'mm' } : lines.ofFile());
   const verdict = () => {
     if (made.value) return verdictOf(made.value, ofFile());
-    if (engine.partial.value && !engine.busy.value) return 'Stopped before the mesh was complete.';
-    return engine.busy.value || !engine.empty.value ? 'Making the mesh …' : 'There is no surface to make a mesh of.';
+    if (engine.result.value === 'partial' && engine.status.value !== 'sampling')
+      return 'Stopped before the mesh was complete.';
+    return engine.status.value === 'sampling' || engine.result.value !== 'none'
+      ? 'Making the mesh …'
+      : 'There is no surface to make a mesh of.';
   };
   const up = createSelect({ choices: AXES.map((value) => ({ value, label: value })) });
   const formats = {

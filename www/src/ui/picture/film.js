@@ -59,7 +59,7 @@ function poserOf(engine, subject) {
 const sampled = (engine) =>
   new Promise((resolve) => {
     const stop = effect(() => {
-      if (engine.busy.value || engine.reveal.value) return;
+      if (engine.status.value === 'sampling' || engine.reveal.value) return;
       queueMicrotask(() => stop());
       resolve();
     });

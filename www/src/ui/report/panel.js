@@ -33,10 +33,12 @@ export function mountReport(body, engine, description, title) {
   // During a run the previous figures stay, dimmed, except for the count, which is that of the caption.
   let kept = engine.report.peek();
   const report = computed(() => {
-    kept = engine.empty.value ? null : (engine.report.value ?? kept);
+    kept = engine.result.value === 'none' ? null : (engine.report.value ?? kept);
     return kept;
   });
-  const counted = computed(() => (engine.busy.value || !engine.report.value ? engine.progress.value.particles : 0));
+  const counted = computed(() =>
+    engine.status.value === 'sampling' || !engine.report.value ? engine.progress.value.particles : 0,
+  );
   const stale = computed(() => engine.report.value === null);
   live(body, () => {
     body.classList.toggle('stale', stale.value || counted.value > 0);
@@ -73,7 +75,7 @@ export function mountReport(body, engine, description, title) {
       `Order, triangles and spacing leave out ${plural(excluded.value, 'particle')} at the border; the figures of the mesh do not.`,
   );
   const waiting = h('p', { class: 'quiet waiting', hidden: () => report.value !== null }, () =>
-    engine.empty.value
+    engine.result.value === 'none'
       ? 'Nothing to measure: there is no surface inside the box.'
       : 'The figures appear when a run is done.',
   );

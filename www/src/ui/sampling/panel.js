@@ -42,16 +42,16 @@ export function mountSampling(body, engine, { settings }, { head }) {
 
 /** @param {Engine} engine */
 function createActions(engine) {
-  const { busy, loading, progress } = engine;
+  const { status, loading, progress } = engine;
   const due = isDue(engine);
-  const idle = () => !busy.value && loading.value === null;
+  const idle = () => status.value !== 'sampling' && loading.value === null;
   /** Why the present particles, and those of the next run, are not relaxed; empty if they can be. */
   const pinned = computed(() => {
     void engine.revision.value;
     return unrelaxed(engine.columns.pattern);
   });
   const stiff = computed(() => unrelaxed(patternOf(engine.state.value.settings)));
-  const fixed = () => busy.value || progress.value.particles === 0 || pinned.value !== '';
+  const fixed = () => status.value === 'sampling' || progress.value.particles === 0 || pinned.value !== '';
   /** @type {[string, string | (() => string), ButtonProps][]} */
   const actions = [
     [

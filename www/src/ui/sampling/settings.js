@@ -71,8 +71,9 @@ export function countChanged(some, all, values) {
  * highlighted, because changes are sampled automatically.
  * @param {Engine} engine
  */
-export const isDue = ({ typing, partial, report, empty, busy, progress }) =>
+export const isDue = ({ trial, result, report, status, progress }) =>
   computed(() => {
-    const isWhole = report.value !== null || empty.value || busy.value || progress.value.phase !== 'done';
-    return typing.value || partial.value || !isWhole;
+    const isWhole = report.value !== null || result.value === 'none';
+    const rests = status.value !== 'sampling' && progress.value.phase === 'done';
+    return trial.value === 'typing' || result.value === 'partial' || (rests && !isWhole);
   });

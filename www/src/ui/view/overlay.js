@@ -28,7 +28,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const hint = h('p', { class: 'hint' }, 'Drag to turn');
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
   // An error in the formula is shown beside the formula instead.
-  const lost = computed(() => engine.empty.value && engine.fieldError.value === null);
+  const lost = computed(() => engine.result.value === 'none' && engine.fieldError.value === null);
   const empty = h('div', { class: 'empty', role: 'status', hidden: () => !lost.value }, () => {
     if (!lost.value) return null;
     // The next formula may lack a surface for another reason.
@@ -42,9 +42,9 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
       : engine.reveal.value
         ? revealOf(engine.reveal.value)
         : captionOf(engine.progress.value, {
-            partial: engine.partial.value,
-            empty: engine.empty.value,
-            busy: engine.busy.value,
+            partial: engine.result.value === 'partial',
+            empty: engine.result.value === 'none',
+            busy: engine.status.value === 'sampling',
             seconds: engine.timing.value?.sampling ?? null,
             steps: engine.timing.value?.steps ?? 0,
           }),
@@ -70,14 +70,14 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   announce(
     spoken,
     whole,
-    computed(() => engine.busy.value || engine.reveal.value !== null),
+    computed(() => engine.status.value === 'sampling' || engine.reveal.value !== null),
   );
 
   // The poster is shown until the first particles are drawn.
   const drawn = computed(
     () => engine.frame.value > 0 && engine.progress.value.particles > 0 && engine.reveal.value?.particles !== 0,
   );
-  const settled = computed(() => drawn.value || engine.empty.value);
+  const settled = computed(() => drawn.value || engine.result.value === 'none');
   live(poster, () => poster.classList.toggle('gone', poster.matches('.gone') || settled.value));
   live(start, () => {
     if (settled.value || engine.description.value || engine.notice.value?.id === 'load') start.hidden = true;
@@ -93,9 +93,9 @@ const createChip = ({ backend }) =>
 
 /** Returns the text about the mesh while it is drawn. @param {Engine} engine */
 function meshOf(engine) {
-  if (engine.state.value.view.draw !== 'mesh' || engine.empty.value) return '';
+  if (engine.state.value.view.draw !== 'mesh' || engine.result.value === 'none') return '';
   const mesh = engine.mesh.value;
-  return mesh && !engine.busy.value && !engine.reveal.value ? verdictOf(mesh) : '';
+  return mesh && engine.status.value !== 'sampling' && !engine.reveal.value ? verdictOf(mesh) : '';
 }
 
 /** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */

@@ -98,7 +98,9 @@ test('a formula is typed, and mended', async ({ page }) => {
     await expect(editor).toHaveAttribute('aria-invalid', 'false');
     await page.keyboard.type('qrt(2');
     await page.keyboard.press('Enter');
-    expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.typing.value)).toBe(false);
+    expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.trial.value)).not.toBe(
+      'typing',
+    );
     await settled(page);
     expect((await state(page)).formula).toBe('x^2 + y^2 + z^2 = sqrt(2)');
     await expect(page.locator('.row[data-parameter]')).toHaveCount(0);
@@ -204,13 +206,13 @@ test('a formula is typed, and mended', async ({ page }) => {
       engine.setSetting('radius_share', 0.001);
       await new Promise((resolve) => {
         const end = engine.progress.subscribe((/** @type {{ particles: number }} */ { particles }) => {
-          if (engine.busy.value && particles > 5000) queueMicrotask(() => resolve(end()));
+          if (engine.status.value === 'sampling' && particles > 5000) queueMicrotask(() => resolve(end()));
         });
       });
-      const wasBusy = engine.busy.value;
+      const wasBusy = engine.status.value === 'sampling';
       editor?.dispatchEvent(press);
-      while (engine.busy.value) await new Promise((go) => setTimeout(go, 10));
-      return { wasBusy, isPartial: engine.partial.value };
+      while (engine.status.value === 'sampling') await new Promise((go) => setTimeout(go, 10));
+      return { wasBusy, isPartial: engine.result.value === 'partial' };
     });
     expect(stopped).toEqual({ wasBusy: true, isPartial: true });
   });

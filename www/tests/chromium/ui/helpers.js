@@ -87,12 +87,12 @@ export async function settled(page, drawnBy = new URL(page.url()).searchParams.g
   await page.waitForFunction(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
     return (
-      !engine.typing.value &&
-      !engine.busy.value &&
+      engine.trial.value !== 'typing' &&
+      engine.status.value !== 'sampling' &&
       engine.loading.value === null &&
       engine.reveal.value === null &&
       engine.progress.value.phase === 'done' &&
-      (engine.report.value !== null || engine.empty.value)
+      (engine.report.value !== null || engine.result.value === 'none')
     );
   });
   await expectDrawn(page, drawnBy);
@@ -111,7 +111,7 @@ export async function expectDrawn(page, kind) {
 export async function atRest(page) {
   await page.waitForFunction(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
-    return !engine.typing.value && !engine.busy.value && engine.reveal.value === null;
+    return engine.trial.value !== 'typing' && engine.status.value !== 'sampling' && engine.reveal.value === null;
   });
   await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());

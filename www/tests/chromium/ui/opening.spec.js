@@ -189,7 +189,7 @@ test('at rest there are few controls in view; the others come with the pointer o
       engine.setSetting('radius_share', 0.001);
       return new Promise((resolve) => {
         const end = engine.progress.subscribe((/** @type {{particles: number}} */ { particles }) => {
-          if (!engine.busy.value || particles < 100) return;
+          if (engine.status.value !== 'sampling' || particles < 100) return;
           queueMicrotask(() => resolve(end()));
           engine.stop();
         });

@@ -362,7 +362,7 @@ test('the report, what can be taken away, and what is said where there is no sur
         const { engine } = /** @type {any} */ (window).marchingParticles;
         // Most of a million particles: long enough to be looked at on any machine.
         engine.setSetting('max_particles', 3_000_000);
-        if (engine.empty.value) engine.setFormula('x^2 + y^2 + z^2 = 1');
+        if (engine.result.value === 'none') engine.setFormula('x^2 + y^2 + z^2 = 1');
         engine.setSetting('radius_share', share);
         const radius = share * 4;
         const shown = (/** @type {string} */ selector) =>
@@ -370,7 +370,7 @@ test('the report, what can be taken away, and what is said where there is no sur
         for (;;) {
           await new Promise((go) => setTimeout(go));
           const { radius: present, particles } = engine.progress.value;
-          if (engine.busy.value && present > 0 && present < radius && particles > 1000) break;
+          if (engine.status.value === 'sampling' && present > 0 && present < radius && particles > 1000) break;
         }
         const count = [...document.querySelectorAll('.figures tr')].find((row) =>
           /^Particles/.test(row.textContent ?? ''),

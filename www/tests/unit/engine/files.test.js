@@ -154,7 +154,16 @@ describe('a file of a mesh', () => {
 
 describe('a job of an image', () => {
   const job = (/** @type {number} */ id, /** @type {string} */ name) =>
-    /** @type {any} */ ({ kind: 'new', id, field: { parameters: { iso: id } }, settings: {}, file: imageOf(name) });
+    /** @type {any} */ ({
+      id,
+      job: { kind: 'new', field: { parameters: { iso: id } }, settings: {} },
+      given: { file: imageOf(name) },
+    });
+
+  const live = (/** @type {number} */ id) => {
+    const { job: whole, ...numbered } = job(id, 'a.nii');
+    return { ...numbered, job: { ...whole, kind: 'live' } };
+  };
 
   test('waits until the core has its image, also after another one', async () => {
     const core = coreOf(fakeCore());
@@ -167,7 +176,7 @@ describe('a job of an image', () => {
       (message) => void posted.push(message),
       () => 0,
       {
-        isReady: (ours, { file, field }) => !file || keeper.isReady(ours, file, field, { whenReady: () => ready() }),
+        isReady: (ours, _, file, field) => keeper.isReady(ours, file, field, { whenReady: () => ready() }),
         setField: (ours, file, field) => keeper.setField(ours, file, field),
         stop: () => keeper.stop(),
       },
@@ -205,12 +214,12 @@ describe('a job of an image', () => {
       (message) => void posted.push(`${message.type} ${'id' in message ? message.id : ''}`),
       () => 0,
       {
-        isReady(ours, { file, field }) {
+        isReady(ours, _, file, field) {
           let whenReady = () => {};
           made = new Promise((done) => {
             whenReady = done;
           });
-          return !file || keeper.isReady(ours, file, field, { whenReady });
+          return keeper.isReady(ours, file, field, { whenReady });
         },
         setField: (ours, file, field) => keeper.setField(ours, file, field),
         stop: () => keeper.stop(),
@@ -221,12 +230,12 @@ describe('a job of an image', () => {
 
   test('has its field made in slices, while the control moves on', async () => {
     const { core, jobs, posted, made } = await slowly('a.nii');
-    jobs.add({ ...job(1, 'a.nii'), kind: 'live' });
+    jobs.add(live(1));
     expect(jobs.take(core)).toBe(null);
     const first = made();
     // The next values of a drag wait for this one; the last of them waits longest.
-    jobs.add({ ...job(2, 'a.nii'), kind: 'live' });
-    jobs.add({ ...job(3, 'a.nii'), kind: 'live' });
+    jobs.add(live(2));
+    jobs.add(live(3));
     expect(jobs.take(core)).toBe(null);
     await first;
     expect(jobs.take(core)?.id).toBe(1);

@@ -4,24 +4,24 @@ import { runJob } from '../../../src/engine/sampling/job.js';
 import { Jobs } from '../../../src/engine/sampling/jobs.js';
 import { fakeCore } from './fake-core.js';
 
-/** @import { FromWorker, Job, Memory, SampleJob } from '../../../src/engine/sampling/types.js' */
+/** @import { FromWorker, Memory, Numbered, RelaxJob, SampleJob } from '../../../src/engine/sampling/types.js' */
 
-/** @param {Partial<SampleJob>} [part] @returns {SampleJob} */
-const sampleJob = (part = {}) => ({
-  kind: 'grow',
-  id: 7,
-  field: { formula: 'x' },
-  points: null,
-  settings: {},
-  following: [],
-  askAbove: Infinity,
-  ...part,
+/**
+ * @param {Partial<SampleJob & Pick<Numbered, 'id' | 'given'>>} [part]
+ * @returns {Numbered & {job: SampleJob}}
+ */
+const sampleJob = ({ id = 7, given = null, ...part } = {}) => ({
+  id,
+  job: { kind: 'grow', field: { formula: 'x' }, settings: {}, following: [], ...part },
+  given,
 });
+/** @param {number} id @param {number} steps @returns {Numbered & {job: RelaxJob}} */
+const relaxJob = (id, steps) => ({ id, job: { kind: 'relax', of: 7, steps }, given: null });
 
 /**
  * Runs a job on a scripted core, and returns what it posted.
  * @param {ReturnType<typeof fakeCore>} core
- * @param {Job} job
+ * @param {Numbered} job
  * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean,
  *   curvature?: (posted: FromWorker[]) => boolean, mesh?: boolean, memory?: Memory}} [options]
  */
@@ -250,7 +250,7 @@ describe('a job', () => {
     const core = fakeCore({ particles: 3000 });
     await run(core, sampleJob());
     const made = core.calls.length;
-    const job = sampleJob({ id: 8, kind: 'live', following: [sampleJob().settings] });
+    const job = sampleJob({ id: 8, kind: 'live', following: [sampleJob().job.settings] });
     const { posted } = await run(core, job, { interrupt: () => 'stop' });
     expect(of(posted, 'done')).toMatchObject([{ id: 8, outcome: 'stopped', reportFollows: false }]);
     expect(core.calls.slice(made)).not.toContain('follow');
@@ -294,7 +294,7 @@ describe('a job', () => {
 
   test('more particles than agreed are asked about first', async () => {
     const core = fakeCore({ particles: 500_000 });
-    const { posted } = await run(core, sampleJob({ askAbove: 200_000 }));
+    const { posted } = await run(core, sampleJob({ settings: { max_particles: 200_000 } }));
     expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'ask', predicted: 500_000 });
     expect(core.calls).not.toContain('step');
   });
@@ -359,7 +359,7 @@ describe('a job', () => {
     }
     const core = fakeCore({ particles: 3000, relax_steps: 1 });
     const { memory } = await run(core, sampleJob());
-    const relax = /** @type {const} */ ({ kind: 'relax', id: 8, of: 7, steps: 4 });
+    const relax = relaxJob(8, 4);
     const relaxed = await run(core, relax, { mesh: true, memory });
     expect(of(relaxed.posted, 'columns').filter(({ radii }) => radii.length > 0)).toHaveLength(1);
   });
@@ -411,15 +411,11 @@ describe('a job', () => {
   test('relaxing goes on from the particles at hand, and only from those', async () => {
     const core = fakeCore({ particles: 3000, relax_steps: 1 });
     const { memory } = await run(core, sampleJob());
-    const again = await run(core, { kind: 'relax', id: 8, of: 7, steps: 4 }, { memory });
+    const again = await run(core, relaxJob(8, 4), { memory });
     expect(of(again.posted, 'done')[0].outcome).toBe('complete');
     expect(of(again.posted, 'columns').at(-1)?.progress?.relax_step).toBe(5);
     for (const range of of(again.posted, 'columns')) expect(range.first).toBe(0);
-    const lost = await run(
-      core,
-      { kind: 'relax', id: 9, of: 7, steps: 1 },
-      { memory: { held: 0, meshed: 0, gaveUp: false } },
-    );
+    const lost = await run(core, relaxJob(9, 1), { memory: { held: 0, meshed: 0, gaveUp: false } });
     expect(of(lost.posted, 'done')[0].outcome).toBe('lost');
   });
 
@@ -430,7 +426,7 @@ describe('a job', () => {
     // The core of the tests moves everything by a half in each step.
     expect(positions.map(([x]) => x)).toEqual([0, 0.5, 1]);
     expect(positions.every(({ length }) => length === 9000)).toBe(true);
-    const relax = /** @type {const} */ ({ kind: 'relax', id: 8, of: 7, steps: 2 });
+    const relax = relaxJob(8, 2);
     const again = await run(core, relax, { memory });
     expect(of(again.posted, 'past')[0].positions.map(([x]) => x)).toEqual([1.5, 2]);
   });
@@ -454,7 +450,7 @@ describe('a job', () => {
 /**
  * Runs jobs as the worker does.
  * @param {ReturnType<typeof fakeCore>} core
- * @param {SampleJob} first
+ * @param {Numbered} first
  * @param {(jobs: Jobs, posted: FromWorker[]) => void} meanwhile  between any two slices of work
  */
 async function work(core, first, meanwhile = () => {}) {
@@ -489,7 +485,7 @@ async function work(core, first, meanwhile = () => {}) {
 describe('a job that comes while another is under way', () => {
   /**
    * Adds it once so many messages of a kind are there.
-   * @param {SampleJob} job
+   * @param {Numbered} job
    * @param {FromWorker['type']} type
    * @param {number} n
    */
@@ -554,7 +550,7 @@ describe('a job that comes while another is under way', () => {
   test('of a drag is dropped by a stop, and leaves the one before it with its own field and figures', async () => {
     let added = false;
     const core = fakeCore({ particles: 20_000 });
-    const settings = sampleJob().settings;
+    const settings = sampleJob().job.settings;
     const next = sampleJob({ id: 8, kind: 'live', field: { formula: 'y' }, following: [settings] });
     const { posted, memory } = await work(core, sampleJob({ kind: 'live' }), (jobs) => {
       if (added || core.count() < 100) return;
@@ -685,12 +681,12 @@ test('a job on a model hands the core the solved system, with the clip box in fo
   };
   const points = { field: new Uint8Array(44), info: { info, bounds } };
   const core = fakeCore();
-  const own = await work(core, sampleJob({ field: { points: 'bunny' }, points }));
+  const own = await work(core, sampleJob({ field: { points: 'bunny' }, given: points }));
   expect(core.calls).toContain('set_points 44');
   expect(core.calls).not.toContain('set_field');
   expect(of(own.posted, 'field')[0].answer).toMatchObject({ ok: true, model: info, bounds });
   const clip = { min: bounds.min, max: /** @type {[number, number, number]} */ ([1, 1, 0]) };
-  const clipped = await work(core, sampleJob({ field: { points: 'bunny', bounds: clip }, points }));
+  const clipped = await work(core, sampleJob({ field: { points: 'bunny', bounds: clip }, given: points }));
   expect(of(clipped.posted, 'field')[0].answer).toMatchObject({ bounds: clip });
 });
 

@@ -1,7 +1,5 @@
 import { describe, expect, test } from 'vitest';
 import {
-  awaitsParticles,
-  awaitsWorker,
   backdropOf,
   IDLE,
   inputOf,
@@ -9,30 +7,31 @@ import {
   reduce,
   relaxed,
   restoringOf,
+  statusOf,
   trialOf,
 } from '../../../src/engine/sampling/ledger.js';
 import { description } from './description.js';
 
 /**
- * @import { Ledger, LedgerEvent, Outcome, SampleRequest } from '../../../src/engine/sampling/types.js'
+ * @import { Ledger, LedgerEvent, Outcome, SampleJob } from '../../../src/engine/sampling/types.js'
  * @import { Bounds } from '../../../src/engine/types.js'
  */
 
 const { bounds } = description.surfaces[0];
 
-/** @param {string} formula @param {Partial<SampleRequest>} [more] @returns {SampleRequest} */
+/** @param {string} formula @param {Partial<SampleJob>} [more] @returns {SampleJob} */
 const wish = (formula, more = {}) => ({
   kind: 'new',
   field: { formula },
   settings: { relax_steps: 10 },
   ...more,
 });
-/** @param {SampleRequest} request @returns {LedgerEvent} */
-const sent = (request) => ({ type: 'sent', request, nowMs: 0 });
+/** @param {SampleJob} job @returns {LedgerEvent} */
+const sent = (job) => ({ type: 'sent', job, nowMs: 0 });
 /** @param {number} of @param {number} steps @returns {LedgerEvent} */
 const relax = (of, steps) => ({
   type: 'sent',
-  request: { kind: 'relax', of, steps },
+  job: { kind: 'relax', of, steps },
   nowMs: 0,
 });
 /** @param {number} id @returns {LedgerEvent} */
@@ -72,27 +71,27 @@ describe('a run', () => {
   test('goes through its stages, and is waited for by the page and by the worker as long as each has to', () => {
     const seen = whole().map((_, k) => {
       const state = stateAfter(.../** @type {LedgerEvent[]} */ (whole()).slice(0, k + 1));
-      return [state.current?.stage, awaitsParticles(state), awaitsWorker(state)];
+      return [state.current?.stage, statusOf(state)];
     });
     expect(seen).toEqual([
-      [undefined, true, true],
-      ['seeding', true, true],
-      ['growing', true, true],
-      ['measuring', false, true],
-      ['over', false, false],
+      [undefined, 'sampling'],
+      ['seeding', 'sampling'],
+      ['growing', 'sampling'],
+      ['measuring', 'measuring'],
+      ['over', 'rest'],
     ]);
   });
 
   test('is on the page from its first particle on, and held by the worker from its end on', () => {
     const state = stateAfter(sent(wish('x')), accepted(1), particles);
-    expect(state).toMatchObject({ held: 0, shown: { request: wish('x'), reported: false } });
+    expect(state).toMatchObject({ held: 0, shown: { job: wish('x'), reported: false } });
     expect(afterWhole()).toMatchObject({ held: 1, shown: { reported: true }, astray: false });
   });
 
   test('takes over when its field is accepted, and those asked before it are forgotten', () => {
     const state = stateAfter(sent(wish('x')), sent(wish('y')), sent(wish('z')), accepted(2));
     expect(state.current).toMatchObject({ id: 2, bounds, stage: 'seeding' });
-    expect(state.asked.map((ticket) => ticket.id)).toEqual([3]);
+    expect(state.asked.map((run) => run.id)).toEqual([3]);
     expect(state.accepted).toEqual(wish('y'));
     // An answer about one of them changes nothing any more.
     expect(reduce(state, accepted(1))).toBe(state);
@@ -147,15 +146,15 @@ describe('a relaxation', () => {
   test('has no field to wait for, and makes what is shown a run of as many steps more', () => {
     const begun = afterWhole(relax(1, 5));
     expect(begun.current).toMatchObject({ id: 2, stage: 'seeding' });
-    expect(begun.shown?.request.settings.relax_steps).toBe(10);
+    expect(begun.shown?.job.settings.relax_steps).toBe(10);
     const moved = reduce(begun, particles);
-    expect(moved.shown).toMatchObject({ reported: false, request: { settings: { relax_steps: 15 }, kind: 'again' } });
+    expect(moved.shown).toMatchObject({ reported: false, job: { settings: { relax_steps: 15 }, kind: 'again' } });
     // Only the first particles count.
     expect(reduce(moved, particles)).toBe(moved);
   });
 
   test('of more steps than the core accepts is one of as many as it does', () => {
-    const shown = { request: wish('x'), reported: true };
+    const shown = { job: wish('x'), reported: true };
     expect(relaxed(shown, 5000, description).settings.relax_steps).toBe(1000);
   });
 });
@@ -164,7 +163,7 @@ describe('when the worker goes', () => {
   test('nothing is under way, and what is shown stays', () => {
     const state = afterWhole(sent(wish('y')), accepted(2), sent(wish('z')), { type: 'lost' });
     expect(state).toMatchObject({ asked: [], current: null, held: 0, shown: { reported: true } });
-    expect(awaitsWorker(state)).toBe(false);
+    expect(statusOf(state)).toBe('rest');
   });
 
   test('the run it was at is lost', () => {
@@ -203,7 +202,7 @@ test('a run that a stop has dropped is waited for no more, and the surface is no
   const state = stateAfter(sent(wish('x')), accepted(1), particles, sent(wish('y', { kind: 'live' })));
   const next = reduce(state, { type: 'dropped', id: 2 });
   expect(next).toMatchObject({ asked: [], astray: true, current: { id: 1 }, accepted: wish('x') });
-  expect(awaitsParticles(reduce(next, done('stopped', 5)))).toBe(false);
+  expect(statusOf(reduce(next, done('stopped', 5)))).toBe('rest');
 });
 
 test('a worker started again by hand may be sent what the last failed on', () => {
@@ -237,9 +236,9 @@ describe('a formula that is being typed', () => {
     expect(backdropOf(reduce(state, sent(wish('z'))))).toBeNull();
     const events = /** @type {LedgerEvent[]} */ ([sent(behind), accepted(4), particles, done('complete', 7)]);
     const after = events.reduce(reduce, state);
-    expect(after).toMatchObject({ held: 0, shown: null, stood: { request: { field: { formula: 'x' } } } });
+    expect(after).toMatchObject({ held: 0, shown: null, stood: { job: { field: { formula: 'x' } } } });
     expect(trialOf(after)).toBe('back');
-    expect(trial('xyz', 5).reduce(reduce, after).stood?.request.field.formula).toBe('x');
+    expect(trial('xyz', 5).reduce(reduce, after).stood?.job.field.formula).toBe('x');
   });
 
   test('stays once it is committed, or sampled by any other control', () => {

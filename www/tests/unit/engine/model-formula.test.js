@@ -18,12 +18,8 @@ describe('a formula typed for a model', () => {
     /** @type {any} */
     const parts = {
       store,
-      scheduler: {
-        chooseTyped: () => {},
-        choose: () => {},
-        loader: { hasFile: true, beginning: () => ({}) },
-        sampling: { commit: () => {} },
-      },
+      sampler: { chooseTyped: () => {}, choose: () => {}, commit: () => {} },
+      loader: { hasFile: true, beginning: () => ({}) },
       framing: { written: () => {}, restored: () => {} },
       picture: { viewer: { linked: null, camera: { state: store.state.value.view.camera } } },
     };

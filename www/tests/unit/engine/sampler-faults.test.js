@@ -23,7 +23,7 @@ describe('a formula with a fault', () => {
     expect(store.field.value?.formula).toBe('x');
     expect(store.fieldError.value).toMatchObject({ kind: 'unexpected_end' });
     expect(told).toEqual(['dim']);
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
   });
 
   test('that is just an empty editor dims nothing', () => {
@@ -38,7 +38,7 @@ describe('a formula with a fault', () => {
     const { sampler, store, say } = page();
     sampler.sample(request('x+'));
     say({ type: 'field', id: 1, answer: fault });
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     expect(store.progress.value.phase).toBe('done');
   });
 
@@ -50,12 +50,12 @@ describe('a formula with a fault', () => {
     // What comes before the answer is the run's too.
     say(columnsMessage(1, 3));
     say({ type: 'field', id: 2, answer: fault });
-    expect(store.busy.value).toBe(true);
+    expect(store.status.value).toBe('sampling');
     say(columnsMessage(1, 7));
     expect(columns.count).toBe(7);
     expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
     say(done(1, 'complete', 7, { reportFollows: true }));
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     expect(told.at(-1)).toBe('fit');
     say(reportMessage(1, 7));
     expect(store.report.value?.count).toBe(7);
@@ -79,7 +79,7 @@ describe('a formula with a fault', () => {
     say(done(1, 'complete', 7, { reportFollows: true }));
     sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     say(reportMessage(1, 7));
     expect(store.report.value?.count).toBe(7);
     // And the surface that stayed can be relaxed on.
@@ -93,10 +93,10 @@ describe('a formula with a fault', () => {
     sampler.sample(request('x+'));
     sampler.sample(request('y'));
     accept(1);
-    expect(store.busy.value).toBe(true);
+    expect(store.status.value).toBe('sampling');
     accept(3, 'y');
     finish(3, 7);
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     expect(store.field.value?.formula).toBe('y');
   });
 
@@ -240,7 +240,7 @@ describe('the surface that stays', () => {
     say(columnsMessage(2, 0));
     say(done(2, 'stopped', 0));
     expect(columns).toMatchObject({ count: 7, stale: false });
-    expect(store.partial.value).toBe(false);
+    expect(store.result.value).not.toBe('partial');
     expect(store.report.value?.count).toBe(7);
     expect(store.progress.value).toMatchObject({ phase: 'done', particles: 7 });
     expect(told.at(-1)).toBe('dim');
@@ -273,8 +273,12 @@ describe('a stop starts no run', () => {
     say(done(2, 'stopped'));
     expect(jobs()).toHaveLength(2);
     expect(columns).toMatchObject({ count: 7, record: null });
-    expect(store.partial.value).toBe(true);
-    expect([store.busy.value, store.progress.value.phase, told.at(-1)]).toEqual([false, 'done', 'dim']);
+    expect(store.result.value).toBe('partial');
+    expect([store.status.value === 'sampling', store.progress.value.phase, told.at(-1)]).toEqual([
+      false,
+      'done',
+      'dim',
+    ]);
   });
 
   test('before the field of the next is refused, although the surface of a drag has no figures', () => {
@@ -332,7 +336,7 @@ describe('a worker that fails', () => {
     const { sampler, store, say, jobs } = page();
     sampler.sample(request('x'));
     const rests = /** @type {boolean[]} */ ([]);
-    effect(() => void rests.push(!store.busy.value && store.progress.value.phase === 'done'));
+    effect(() => void rests.push(store.status.value !== 'sampling' && store.progress.value.phase === 'done'));
     say(crash);
     expect(rests).not.toContain(true);
     expect(workers).toHaveLength(2);
@@ -351,9 +355,9 @@ describe('a worker that fails', () => {
     expect(workers).toHaveLength(3);
     expect(jobs()).toHaveLength(0);
     expect(store.notice.value?.kind).toBe('error');
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     expect(store.progress.value.phase).toBe('done');
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     sampler.sample(request('y'));
     expect(jobs()).toHaveLength(1);
   });
@@ -365,7 +369,7 @@ describe('a worker that fails', () => {
     say(done(1, 'complete', 7, { reportFollows: true }));
     say(crash);
     expect(jobs()).toMatchObject([{ kind: 'again', field: { formula: 'x' } }]);
-    expect(store.busy.value).toBe(true);
+    expect(store.status.value).toBe('sampling');
   });
 
   test('by silence is replaced too', () => {
@@ -405,13 +409,13 @@ describe('a worker that fails', () => {
       say({ ...crash, id: 0 });
     }
     expect(store.notice.value?.id).toBe('safe-mode');
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     expect(columns.count).toBe(7);
     sampler.sample(request('later'));
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     store.notice.value?.action?.run();
     expect(store.notice.value).toBe(null);
-    expect(jobs()[0].field).toEqual({ formula: 'whole' });
+    expect(jobs()[0].field).toMatchObject({ formula: 'whole' });
   });
 
   test('after it, relaxing makes the whole run again with the steps added', () => {
@@ -433,12 +437,12 @@ describe('a worker that fails', () => {
     say(crash);
     expect(jobs()).toHaveLength(0);
     sampler.relax(2);
-    expect(jobs()[0]).toMatchObject({ kind: 'grow', field: { formula: 'whole' } });
+    expect(jobs()[0]).toMatchObject({ kind: 'change', field: { formula: 'whole' } });
   });
 
   test('to load says why, and tries again when asked', () => {
     const { sampler, store } = page();
-    sampler.client.supervisor.receive({
+    sampler.client.receive({
       type: 'failed',
       fault: 'missing',
       message: 'The sampler is not on the server.',

@@ -5,14 +5,14 @@ import { Sampler } from '../../../src/engine/sampling/sampler.js';
 import { createStore } from '../../../src/engine/store.js';
 import { description } from './description.js';
 
-/** @import { SampleRequest } from '../../../src/engine/sampling/types.js' */
+/** @import { SampleJob } from '../../../src/engine/sampling/types.js' */
 
 /** @type {any[]} */
 export let workers = [];
+/** The models that are there, by their keys. @type {Record<string, any>} */
+export let solved = {};
 /** What the picture was told. @type {string[]} */
 export let told = [];
-/** @type {number[]} */
-export let asked = [];
 
 export const seconds = { seeding: 0.001, generation: 0.002, refinement: 0, relaxation: 0.003, quality: 0 };
 export const progress = (/** @type {number} */ particles, /** @type {any} */ more = {}) => ({
@@ -115,6 +115,16 @@ export function page() {
       fit: () => told.push('fit'),
       dim: (dim) => told.push(dim ? 'dim' : 'clear'),
     },
+    models: {
+      key: () => undefined,
+      ready: () => true,
+      present: () => store.state.value,
+      load: () => {},
+      settled: () => {},
+      solved: (key) => solved[key],
+      orderKey: '',
+      cancel: () => {},
+    },
     spawn: () => {
       const worker = {
         posted: /** @type {any[]} */ ([]),
@@ -126,11 +136,10 @@ export function page() {
       workers.push(worker);
       return worker;
     },
-    whole: () => request('whole'),
     onReady: () => told.push('ready'),
-    onAsk: (predicted) => asked.push(predicted),
     clock: { now: () => Date.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout },
   });
+  store.state.value = { ...store.state.value, formula: 'whole' };
   sampler.start();
   const say = (/** @type {any} */ message) => workers.at(-1).onmessage?.({ data: message });
   say({ type: 'ready', description });
@@ -160,10 +169,10 @@ export function page() {
       workers
         .at(-1)
         .posted.filter((/** @type {any} */ m) => m.type === 'job')
-        .map((/** @type {any} */ m) => m.job),
+        .map((/** @type {any} */ m) => ({ id: m.id, ...m.job, given: m.given })),
   };
 }
-/** @param {string} formula @param {Partial<SampleRequest>} [more] @returns {SampleRequest} */
+/** @param {string} formula @param {Partial<SampleJob>} [more] @returns {SampleJob} */
 export const request = (formula, more = {}) => ({
   kind: 'grow',
   field: { formula },
@@ -175,6 +184,6 @@ export const request = (formula, more = {}) => ({
 export function begin() {
   vi.useFakeTimers();
   workers = [];
+  solved = {};
   told = [];
-  asked = [];
 }

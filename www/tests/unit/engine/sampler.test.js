@@ -1,7 +1,6 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 import { description } from './description.js';
 import {
-  asked,
   begin,
   columnsMessage,
   done,
@@ -9,6 +8,7 @@ import {
   progress,
   reportMessage,
   request,
+  solved,
   told,
   workers,
 } from './sampler-page.js';
@@ -17,7 +17,7 @@ beforeEach(begin);
 afterEach(() => vi.useRealTimers());
 
 describe('a model from points', () => {
-  const solved = /** @type {any} */ ({
+  const bunny = /** @type {any} */ ({
     field: Uint8Array.of(1),
     info: { info: { name: 'Bunny' }, bounds: description.surfaces[0].bounds },
     centres: new Float32Array(3),
@@ -35,15 +35,15 @@ describe('a model from points', () => {
 
   test('goes to the worker with every job, so that a new worker has it too', () => {
     const { sampler, store, say, jobs } = page();
-    sampler.solved = (key) => (key === 'bunny' ? solved : undefined);
+    solved.bunny = bunny;
     sampler.sample({ ...request(''), field: { points: 'bunny', surface: 'bunny' } });
-    expect(jobs()[0].points).toBe(solved);
+    expect(jobs()[0].given).toBe(bunny);
     say({ type: 'field', id: 1, answer });
     expect(store.field.value).toMatchObject({ model: { name: 'Bunny' }, surface: 'bunny' });
     expect(store.model.value).toMatchObject({ name: 'Bunny' });
     say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
     say({ type: 'ready', description });
-    expect(jobs()[0].points).toBe(solved);
+    expect(jobs()[0].given).toBe(bunny);
     sampler.sample(request('x'));
     say({ type: 'field', id: 3, answer: { ...answer, model: null } });
     expect(store.model.value).toBe(null);
@@ -106,14 +106,14 @@ describe('a run', () => {
   test('goes from the wish to the figures', () => {
     const { sampler, store, columns, say, accept, jobs } = page();
     sampler.sample(request('x', { kind: 'new' }));
-    expect(store.busy.value).toBe(true);
+    expect(store.status.value).toBe('sampling');
     expect(jobs()).toHaveLength(1);
     accept(1);
     say(columnsMessage(1, 5));
     expect(columns.count).toBe(5);
     expect(workers[0].posted.at(-1)).toEqual({ type: 'drawn', id: 1 });
     say(done(1, 'complete', 5, { reportFollows: true }));
-    expect(store.busy.value).toBe(false);
+    expect(store.status.value).not.toBe('sampling');
     expect(store.progress.value.phase).toBe('quality');
     expect(store.report.value).toBe(null);
     say(reportMessage(1, 5));
@@ -148,7 +148,7 @@ describe('a run', () => {
     finish(1, 7);
     expect(columns.count).toBe(0);
     expect(store.field.value?.formula).toBe('y');
-    expect(store.busy.value).toBe(true);
+    expect(store.status.value).toBe('sampling');
     expect(sampler.stale).toBe(2);
   });
 
@@ -160,10 +160,10 @@ describe('a run', () => {
     expect(workers[0].posted.at(-1)).toEqual({ type: 'stop' });
     say(done(1, 'stopped', 7));
     expect(columns.count).toBe(7);
-    expect(store.partial.value).toBe(true);
+    expect(store.result.value).toBe('partial');
     start(2);
     finish(2, 9);
-    expect(store.partial.value).toBe(false);
+    expect(store.result.value).not.toBe('partial');
   });
 
   test('without a surface keeps the last one, dimmed and of no account, until there is another', () => {
@@ -175,7 +175,7 @@ describe('a run', () => {
     say(columnsMessage(2, 0));
     say({ ...done(2, 'complete', 0), progress: progress(0, { phase: 'done', stop_reason: 'no_surface' }) });
     expect(columns).toMatchObject({ count: 7, stale: true });
-    expect(store.empty.value).toBe(true);
+    expect(store.result.value).toBe('none');
     expect(told.at(-1)).toBe('dim');
     // A mistake after that, and an empty editor, change nothing of it.
     for (const [id, kind] of /** @type {const} */ ([
@@ -194,13 +194,13 @@ describe('a run', () => {
       expect(told.at(-1)).toBe('dim');
     }
     expect(columns.stale).toBe(true);
-    expect(store.empty.value).toBe(true);
+    expect(store.result.value).toBe('none');
     start(5);
     expect(told.at(-1)).toBe('dim');
     // Whether that one has a surface is not known until its first particle, or its end.
-    expect(store.empty.value).toBe(false);
+    expect(store.result.value).not.toBe('none');
     say(columnsMessage(5, 5));
-    expect(store.empty.value).toBe(false);
+    expect(store.result.value).not.toBe('none');
     expect(told).toContain('clear');
     say(done(5, 'complete', 5));
     expect(columns).toMatchObject({ count: 5, stale: false });
@@ -213,11 +213,11 @@ describe('a run', () => {
     say(done(1, 'complete', 0));
     sampler.sample(request('y', { kind: 'live' }));
     accept(2, 'y');
-    expect(store.empty.value).toBe(true);
+    expect(store.result.value).toBe('none');
     say({ type: 'progress', id: 2, progress: progress(0, { phase: 'seeding' }) });
-    expect(store.empty.value).toBe(true);
+    expect(store.result.value).toBe('none');
     say({ type: 'progress', id: 2, progress: progress(40) });
-    expect(store.empty.value).toBe(false);
+    expect(store.result.value).not.toBe('none');
   });
 
   test('that is stopped before its first particle counts none of the last surface where that is of no account', () => {
@@ -229,7 +229,7 @@ describe('a run', () => {
     start(3, 'z');
     say(done(3, 'stopped', 0));
     expect(columns).toMatchObject({ count: 7, stale: true });
-    expect([store.empty.value, store.progress.value.particles]).toEqual([false, 0]);
+    expect([store.result.value === 'none', store.progress.value.particles]).toEqual([false, 0]);
   });
 
   test('counts up with every range of columns that may change what is shown of the particles', () => {
@@ -244,14 +244,14 @@ describe('a run', () => {
   });
 
   test('that needs more particles than agreed is asked about, once', () => {
-    const { sampler, say, accept, jobs } = page();
+    const { sampler, store, say, accept, jobs } = page();
     sampler.sample(request('x'));
-    expect(jobs()[0].askAbove).toBe(1000);
     accept(1);
     say(done(1, 'ask', 0, { predicted: 50_000 }));
-    expect(asked).toEqual([50_000]);
-    sampler.sample(request('x', { kind: 'agreed' }));
-    expect(jobs()[1].askAbove).toBeGreaterThan(1e9);
+    expect(store.notice.value?.text).toBe('About 50,000 particles would be needed; the limit is 1,000.');
+    store.notice.value?.action?.run();
+    expect(store.notice.value).toBe(null);
+    expect(jobs()[1]).toMatchObject({ kind: 'agreed', field: { formula: 'whole' } });
   });
 });
 
@@ -271,7 +271,7 @@ test('a run that the core refuses is said so, with the last surface kept, dimmed
     kind: 'error',
     text: 'There is not enough memory for about 3000000 particles: choose fewer.',
   });
-  expect(store.busy.value).toBe(false);
+  expect(store.status.value).not.toBe('sampling');
   expect(columns.count).toBe(7);
   expect(told.at(-1)).toBe('dim');
   // Until fewer are asked for.

@@ -155,7 +155,7 @@ test.each([false, true])('what is waited for is rejected at the end; the core ha
   if (hasCome) {
     engine.load();
     await shown.ready;
-    engine.busy.value = true;
+    engine.status.value = 'sampling';
   }
   const waiting = [shown.set({ surface: 'torus' }), shown.run(), shown.toFile('glb'), shown.stop()];
   if (!hasCome) waiting.push(shown.ready);

@@ -9,7 +9,7 @@ function page() {
   const engine = {
     state: signal({ parameters: /** @type {Record<string, number>} */ ({}) }),
     field: signal({ parameters: [{ name: 'a', value: 2 }] }),
-    busy: signal(false),
+    status: signal('rest'),
     /** @type {[number, boolean][]} */
     set: [],
     turned: 0,
@@ -81,11 +81,11 @@ describe('motion', () => {
 
   test('waits for a run that takes longer than a frame', () => {
     const { engine, motion } = page();
-    engine.busy.value = true;
+    engine.status.value = 'sampling';
     motion.toggle(RANGE);
     pass(1);
     expect(engine.set).toEqual([]);
-    engine.busy.value = false;
+    engine.status.value = 'rest';
     pass(0.05);
     expect(engine.set).toHaveLength(1);
   });

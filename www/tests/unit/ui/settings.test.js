@@ -68,27 +68,26 @@ describe('the settings', () => {
 describe('Run', () => {
   it('is quiet while the picture is that of the present input, and during a run', () => {
     const store = {
-      typing: signal(false),
-      partial: signal(false),
+      trial: signal('none'),
+      result: signal('whole'),
       report: signal(/** @type {object | null} */ ({})),
-      empty: signal(false),
-      busy: signal(false),
+      status: signal('rest'),
       progress: signal({ phase: 'done' }),
     };
     const due = isDue(/** @type {any} */ (store));
     expect(due.value).toBe(false);
-    for (const name of /** @type {const} */ (['typing', 'partial'])) {
-      store[name].value = true;
-      expect(due.value, name).toBe(true);
-      store[name].value = false;
-    }
+    /** Sets a signal for as long as it is looked at. @param {'trial' | 'result' | 'status'} name @param {string} value */
+    const isDueAt = (name, value) => {
+      const before = store[name].value;
+      store[name].value = value;
+      const is = due.value;
+      store[name].value = before;
+      return is;
+    };
+    expect([isDueAt('trial', 'typing'), isDueAt('result', 'partial')]).toEqual([true, true]);
     store.report.value = null;
     expect(due.value).toBe(true);
-    for (const name of /** @type {const} */ (['busy', 'empty'])) {
-      store[name].value = true;
-      expect(due.value, name).toBe(false);
-      store[name].value = false;
-    }
+    expect([isDueAt('status', 'sampling'), isDueAt('result', 'none')]).toEqual([false, false]);
   });
 });
 

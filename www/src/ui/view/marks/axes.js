@@ -29,7 +29,7 @@ export function axesMark(engine) {
   let last = null;
   const box = computed(() => {
     void engine.revision.value;
-    if (!engine.busy.value) last = engine.columns.stale ? null : engine.columns.bounds();
+    if (engine.status.value !== 'sampling') last = engine.columns.stale ? null : engine.columns.bounds();
     return last ?? clip.value;
   });
   return {

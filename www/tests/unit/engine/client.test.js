@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { Supervisor } from '../../../src/engine/sampling/supervisor.js';
+import { SamplingClient } from '../../../src/engine/sampling/client.js';
 
 class FakeWorker {
   terminated = false;
@@ -28,9 +28,9 @@ let workers = [];
 let events = [];
 /** @type {string[]} */
 let messages = [];
-/** A supervisor that has started its first worker. */
-function supervised() {
-  const supervisor = new Supervisor({
+/** A client that has started its first worker. */
+function started() {
+  const client = new SamplingClient({
     spawn: () => {
       const worker = new FakeWorker();
       workers.push(worker);
@@ -42,18 +42,18 @@ function supervised() {
       messages.push(crash.message);
     },
     onSafeMode: (crash) => events.push(`safe after ${crash.restarts}`),
-    onLoadError: (message) => events.push(`load: ${message}`),
+    onLoadFailed: (text) => events.push(text),
   });
-  supervisor.start();
-  return supervisor;
+  client.start();
+  return client;
 }
 
 /** One whose worker is ready and has work. */
 function busy() {
-  const supervisor = supervised();
+  const client = started();
   workers[0].say(ready);
-  supervisor.setBusy(true);
-  return supervisor;
+  client.setBusy(true);
+  return client;
 }
 
 const ready = { type: 'ready', description: {} };
@@ -67,7 +67,7 @@ beforeEach(() => {
 });
 afterEach(() => vi.useRealTimers());
 
-describe('the supervisor', () => {
+describe('the client of the worker', () => {
   test('lets a worker that filters an image be silent for a minute', () => {
     busy();
     workers[0].say({ type: 'opening' });
@@ -90,20 +90,20 @@ describe('the supervisor', () => {
   });
 
   test('gives up a worker whose script does not come within a minute, busy or not', () => {
-    const supervisor = supervised();
-    supervisor.setBusy(true);
+    const client = started();
+    client.setBusy(true);
     vi.advanceTimersByTime(59_000);
     expect(events).toEqual([]);
     vi.advanceTimersByTime(2000);
-    expect(events).toEqual(['load: no word from it for 60 s']);
-    expect(supervisor.state).toBe('failed');
+    expect(events).toEqual(['The sampler did not load: no word from it for 60 s.']);
+    expect(client.isOff).toBe(true);
     // It may compile for long after its script has come. Once it is ready, a word is expected sooner.
-    supervisor.revive();
-    supervisor.setBusy(true);
+    client.revive();
+    client.setBusy(true);
     vi.advanceTimersByTime(50_000);
     workers[1].say({ type: 'beat' });
     vi.advanceTimersByTime(50_000);
-    expect(events.at(-1)).toBe('beat');
+    expect(workers).toHaveLength(2);
     workers[1].say(ready);
     vi.advanceTimersByTime(4500);
     expect(events.at(-1)).toBe('restart: hang');
@@ -125,8 +125,8 @@ describe('the supervisor', () => {
   });
 
   test('does not watch an idle worker', () => {
-    const supervisor = busy();
-    supervisor.setBusy(false);
+    const client = busy();
+    client.setBusy(false);
     vi.advanceTimersByTime(60_000);
     expect(workers).toHaveLength(1);
   });
@@ -141,7 +141,7 @@ describe('the supervisor', () => {
   });
 
   test('replaces a worker that says it trapped, and hears no more of the old one', () => {
-    supervised();
+    started();
     workers[0].say(ready);
     const late = workers[0].onmessage;
     workers[0].say(crash);
@@ -152,7 +152,7 @@ describe('the supervisor', () => {
   });
 
   test('the fourth failure within a minute is safe mode, until a person asks', () => {
-    const supervisor = supervised();
+    const client = started();
     for (let k = 0; k < 4; k += 1) {
       workers.at(-1)?.say(ready);
       workers.at(-1)?.say(crash);
@@ -160,15 +160,15 @@ describe('the supervisor', () => {
     }
     expect(workers).toHaveLength(4);
     expect(events.at(-1)).toBe('safe after 4');
-    expect(supervisor.state).toBe('safe');
-    supervisor.revive();
+    expect(client.isOff).toBe(true);
+    client.revive();
     expect(workers).toHaveLength(5);
     workers[4].say(crash);
     expect(events.at(-1)).toBe('restart: panic');
   });
 
   test('failures far apart never lead to safe mode', () => {
-    supervised();
+    started();
     for (let k = 0; k < 8; k += 1) {
       workers.at(-1)?.say(crash);
       vi.advanceTimersByTime(21_000);
@@ -177,20 +177,20 @@ describe('the supervisor', () => {
   });
 
   test('a script that does not load is no crash', () => {
-    supervised();
+    started();
     workers[0].onerror?.({ message: 'not found' });
-    expect(events).toEqual(['load: not found']);
+    expect(events).toEqual(['The sampler did not load: not found.']);
     vi.advanceTimersByTime(10_000);
     expect(workers).toHaveLength(1);
   });
 
   test('a load that failed is reported and not repeated by itself', () => {
-    const supervisor = supervised();
+    const client = started();
     workers[0].say({ type: 'failed', fault: 'missing', message: 'gone' });
     vi.advanceTimersByTime(10_000);
-    expect(events).toEqual(['failed']);
+    expect(events).toEqual(['gone']);
     expect(workers).toHaveLength(1);
-    supervisor.revive();
+    client.revive();
     expect(workers).toHaveLength(2);
   });
 });

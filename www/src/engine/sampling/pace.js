@@ -4,12 +4,9 @@
  *
  * @module
  */
-import { KINDS } from './kinds.js';
 
-/**
- * @import { Bounds, FieldRequest, LastDrag, Seconds, Settings, Timing } from '../types.js'
- * @import { Measured, SampleRequest, Ticket } from './types.js'
- */
+/** @import { Bounds, LastDrag, Seconds, Settings, Timing } from '../types.js' */
+/** @import { SampleJob } from './types.js' */
 
 /** Largest latency at which the picture still seems to follow a slider. */
 export const LIVE_MS = 60;
@@ -21,11 +18,11 @@ const FRAME_MS = 34;
 const FEWEST = 500;
 
 /**
- * Returns a key that groups runs of similar cost. Points and formulas differ by an order of magnitude; so do adaptive
- * and uniform runs, and the two methods. Each radius law relates the number of particles to a different length.
- * @param {FieldRequest} field @param {Settings} settings
+ * Returns a key that groups runs of one pace. Points and formulas differ by an order of magnitude; so do adaptive and
+ * uniform runs, and the two methods. Each radius law relates the number of particles to a different length.
+ * @param {Pick<SampleJob, 'field' | 'settings'>} job
  */
-export const costKey = (field, settings) =>
+export const paceKey = ({ field, settings }) =>
   [
     field.points === undefined ? 'formula' : 'points',
     settings.sampling,
@@ -48,10 +45,11 @@ export function sizeOf(settings, diagonal) {
 }
 
 /**
- * Estimates the cost of a run on this machine from earlier runs: milliseconds for seeding, microseconds per particle
- * for the front, a relaxation step and drawing, and the number of particles for a size on the current surface.
+ * Estimates the cost of a run on this machine from earlier runs of one {@link paceKey}: milliseconds for seeding,
+ * microseconds per particle for the front, a relaxation step and drawing, and the number of particles for a size on the
+ * current surface.
  */
-export class CostModel {
+export class Pace {
   #frontUs;
   #relaxUs;
 
@@ -108,52 +106,44 @@ export class CostModel {
     const n = settings.size_mode === 'count' ? Number(settings.count) : this.area / sizeOf(settings, diagonal) ** 2;
     return Math.min(n, cap);
   }
-}
 
-/**
- * Returns the settings of a run during a drag: the full ones if they take at most {@link LIVE_MS}, else settings for
- * the affordable number of particles. The caller limits them to their ranges. A refined run keeps its settings, since
- * it can end at its coarse level, from which the full run continues.
- * @param {Settings} settings  complete, with the defaults filled in
- * @param {number} diagonal  of the clip box; the radius is a share of it
- * @param {CostModel} cost
- * @param {number} [budgetMs]
- * @returns {{settings: Settings, coarse: boolean}}
- */
-export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
-  const relaxSteps = Number(settings.relax_steps);
-  const expected = cost.expected(settings, diagonal);
-  if (!cost.known || !(expected > 0) || !(diagonal > 0) || cost.milliseconds(expected, relaxSteps) <= budgetMs)
-    return { settings, coarse: false };
-  if (settings.method === 'refined') return { settings, coarse: true };
-  const coarseRelax = Math.min(relaxSteps, COARSE_RELAX_STEPS);
-  const perParticleMs = cost.perParticle(coarseRelax) / 1e3;
-  // If seeding takes most of the time, fewer particles do not help; they get half of it.
-  const affordable = Math.max(FEWEST, Math.max(budgetMs - cost.fixedMs, budgetMs / 2) / perParticleMs);
-  const particles = Math.min(expected, affordable);
-  return {
-    settings: {
-      ...settings,
-      relax_steps: coarseRelax,
-      ...coarser(settings, diagonal, cost, particles, expected / particles),
-    },
-    coarse: true,
-  };
+  /**
+   * Returns the settings of a run during a drag: the full ones if they take at most {@link LIVE_MS}, else settings for
+   * the affordable number of particles. The caller limits them to their ranges. A refined run keeps its settings, since
+   * it can end at its coarse level, from which the full run continues.
+   * @param {Settings} settings  complete, with the defaults filled in
+   * @param {number} diagonal  of the clip box; the radius is a share of it
+   * @returns {{settings: Settings, coarse: boolean}}
+   */
+  plan(settings, diagonal) {
+    const relaxSteps = Number(settings.relax_steps);
+    const expected = this.expected(settings, diagonal);
+    if (!this.known || !(expected > 0) || !(diagonal > 0) || this.milliseconds(expected, relaxSteps) <= LIVE_MS)
+      return { settings, coarse: false };
+    if (settings.method === 'refined') return { settings, coarse: true };
+    const coarseRelax = Math.min(relaxSteps, COARSE_RELAX_STEPS);
+    const perParticleMs = this.perParticle(coarseRelax) / 1e3;
+    // If seeding takes most of the time, fewer particles do not help; they get half of it.
+    const affordable = Math.max(FEWEST, Math.max(LIVE_MS - this.fixedMs, LIVE_MS / 2) / perParticleMs);
+    const particles = Math.min(expected, affordable);
+    const size = coarser(settings, diagonal, this.area, particles, expected / particles);
+    return { settings: { ...settings, relax_steps: coarseRelax, ...size }, coarse: true };
+  }
 }
 
 /**
  * Returns the size settings for a number of particles, `fewer` times smaller than the current one.
  * @param {Settings} settings
  * @param {number} diagonal
- * @param {CostModel} cost
+ * @param {number} area  particles · size², 0 while unknown
  * @param {number} particles
  * @param {number} fewer
  * @returns {Settings}
  */
-function coarser(settings, diagonal, cost, particles, fewer) {
+function coarser(settings, diagonal, area, particles, fewer) {
   if (settings.sampling !== 'adaptive') {
     // A radius avoids the pilot run that a count requires.
-    if (cost.area > 0) return { size_mode: 'radius', radius_share: Math.sqrt(cost.area / particles) / diagonal };
+    if (area > 0) return { size_mode: 'radius', radius_share: Math.sqrt(area / particles) / diagonal };
     return { count: Math.round(particles) };
   }
   if (settings.size_mode === 'count') return { count: Math.round(particles) };
@@ -169,75 +159,48 @@ function coarser(settings, diagonal, cost, particles, fewer) {
 /** Pause between live requests after which the next one counts as another drag. */
 const NEXT_DRAG_MS = 1000;
 
-export class Pace {
-  #nowMs;
+/** Measures one drag of a control. */
+export class Drag {
+  /** @type {number[]} */
+  #latencies = [];
+  #requested = 0;
+  #coarse = false;
 
-  /** Cost models by {@link costKey}. @type {Map<string, CostModel>} */
-  #costs;
-
-  /** @param {() => number} nowMs */
+  /** @param {number} nowMs */
   constructor(nowMs) {
-    this.#nowMs = nowMs;
-    this.#costs = new Map();
-    /** @type {{requested: number, latencies: number[], coarse: boolean, quietMs: number} | null} */
-    this.drag = null;
+    /** When its last run was requested. */
+    this.sinceMs = nowMs;
   }
 
-  /** @param {Pick<SampleRequest, 'field' | 'settings'>} request */
-  #costOf({ field, settings }) {
-    const key = costKey(field, settings);
-    const cost = this.#costs.get(key) ?? new CostModel();
-    this.#costs.set(key, cost);
-    return cost;
-  }
-
-  /**
-   * Returns the settings of a run during a drag.
-   * @param {SampleRequest} request
-   * @param {number} diagonal  of the clip box
-   */
-  plan(request, diagonal) {
-    const now = this.#nowMs();
-    if (!this.drag || now - this.drag.quietMs > NEXT_DRAG_MS)
-      this.drag = { requested: 0, latencies: [], coarse: false, quietMs: now };
-    const { drag } = this;
-    drag.requested += 1;
-    drag.quietMs = now;
-    return planLive(request.settings, diagonal, this.#costOf(request));
+  /** Records a request. Returns its drag: this one, or the next. @param {number} nowMs @returns {Drag} */
+  requested(nowMs) {
+    if (nowMs - this.sinceMs > NEXT_DRAG_MS) return new Drag(nowMs).requested(nowMs);
+    this.sinceMs = nowMs;
+    this.#requested += 1;
+    return this;
   }
 
   /**
-   * Updates the cost model and the drag from a finished run.
-   * @param {Ticket} run @param {SampleRequest} sampled  the request that the run sampled, or whose particles it relaxed
-   * @param {Measured} measured
-   * @returns {LastDrag | null} the state of the drag that the run belongs to, if any
+   * Records a run of the drag that has ended.
+   * @param {number} latencyMs @param {number} particles @param {boolean} coarse
+   * @returns {LastDrag}
    */
-  record({ request, sinceMs }, sampled, measured) {
-    const { particles } = measured;
-    const { drag } = this;
-    const cost = this.#costOf(sampled);
-    // A run that ended at its coarse level, or whose particles followed, does not tell the cost of a whole run.
-    const isWhole = !measured.followed && !(request.kind === 'sketch' && request.settings.method === 'refined');
-    if (request.kind !== 'relax' && isWhole) cost.record(measured);
-    if (!KINDS[request.kind].isLive || !drag) return null;
-    const latency = this.#nowMs() - sinceMs;
-    drag.latencies.push(latency);
-    drag.coarse ||= request.kind === 'sketch' && !measured.followed;
-    // The rest of the latency is drawing: a slow graphics device delays every message.
-    cost.recordPicture(particles, latency - samplingSeconds(measured.seconds) * 1e3);
-    const sorted = [...drag.latencies].sort((a, b) => a - b);
+  shown(latencyMs, particles, coarse) {
+    this.#latencies.push(latencyMs);
+    this.#coarse ||= coarse;
+    const sorted = [...this.#latencies].sort((a, b) => a - b);
     return {
-      requested: drag.requested,
+      requested: this.#requested,
       shown: sorted.length,
       latency_ms: sorted[sorted.length >> 1],
       particles,
-      coarse: drag.coarse,
+      coarse: this.#coarse,
     };
   }
 }
 
 /** Returns the sampling time, without the measurement of the figures. @param {Seconds} seconds */
-const samplingSeconds = ({ seeding, generation, refinement, relaxation }) =>
+export const samplingSeconds = ({ seeding, generation, refinement, relaxation }) =>
   seeding + generation + refinement + relaxation;
 
 /**
