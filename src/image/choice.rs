@@ -96,6 +96,7 @@ impl Image {
     /// # Errors
     ///
     /// As for [`Image::surface`].
+    #[doc(hidden)]
     pub async fn surface_in_slices(
         self,
         choice: ImageChoice,
@@ -140,6 +141,7 @@ impl Image {
     }
 
     /// Estimated number of slices of [`Image::surface_in_slices`] without a surface before.
+    #[doc(hidden)]
     #[must_use]
     pub fn slices_of(&self, choice: &ImageChoice) -> u64 {
         /// Passes over all voxels: of the coefficients, of a Gaussian with the range of its result,

@@ -25,6 +25,7 @@ impl Image {
     /// # Errors
     ///
     /// As for [`Image::coarser`].
+    #[doc(hidden)]
     pub async fn coarser_in_slices(&self, step: usize) -> Result<Self, ImageError> {
         assert!(step > 0, "a step from voxel to voxel is at least 1");
         let size = self.size.map(|n| n.div_ceil(step));

@@ -63,6 +63,10 @@ impl Formula {
     /// # Errors
     ///
     /// If the share is not between 0 and 1, or no sheet leaves it empty.
+    ///
+    /// # Panics
+    ///
+    /// Never: the thickness of this formula is only scaled.
     pub fn with_porosity(self, porosity: f64, bounds: &Bounds) -> Result<Self, PorosityError> {
         if !(porosity > 0.0 && porosity < 1.0) {
             return Err(PorosityError::OutOfRange { porosity });

@@ -189,6 +189,7 @@ impl Image {
     /// # Errors
     ///
     /// As for [`Image::read`].
+    #[doc(hidden)]
     pub async fn read_in_slices(
         name: String,
         bytes: Vec<u8>,
