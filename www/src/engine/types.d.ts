@@ -106,8 +106,13 @@ export interface ColumnRange {
  * count.
  */
 export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };
-/** By the settings' names; a missing one has its default. */
+/** By the settings' names; a missing one has its default. `brush` holds the text of what is painted. */
 export type Settings = Record<string, number | string>;
+/**
+ * A place that is painted finer or coarser: a ball, in whose middle the spacing is multiplied by `times`, and beyond
+ * whose `reach` it is not.
+ */
+export type Dab = { at: Vec3; reach: number; times: number };
 /** How particles lie to each other: in hexagons, or drawn over a front. */
 export type Pattern = 'hexagonal' | 'blue' | 'random';
 /**

@@ -27,7 +27,7 @@ import { createToolbar } from './view/toolbar.js';
 /**
  * @import { Description, Engine, ReadonlySignal, Signal, ViewState } from '../engine/types.js'
  * @import { Told } from './levels/types.js'
- * @import { Dialog, Motion, Pins, Shortcut, ShortcutTargets, Toast } from './types.js'
+ * @import { Brush, Dialog, Motion, Pins, Shortcut, ShortcutTargets, Toast } from './types.js'
  */
 
 /**
@@ -58,8 +58,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     inset: (insets) => engine.setInsets(insets),
   });
   const motion = createMotion(engine, stage);
-  /** @type {Pins} */
-  const pins = signal(grabs ? [] : null);
+  const { pins, brush } = handsOf(grabs);
   const history = createHistory(
     engine,
     computed(
@@ -71,8 +70,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
         engine.dragging.value,
     ),
   );
-  /** The generation level that the timeline shows, in words. */
-  /** @type {Signal<Told | null>} */
+  /** The generation level that the timeline shows, in words. @type {Signal<Told | null>} */
   const told = signal(null);
   /** @type {Promise<Description>} */
   const described = new Promise((resolve) => {
@@ -85,6 +83,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
       history,
       motion,
       pins,
+      brush,
       print,
       timeline,
       hide: layout.hideMore,
@@ -106,9 +105,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     untracked(layout.measure);
   });
   linkLearn(engine);
-  const explainIt = async (/** @type {number} */ index) =>
-    location.assign((await import('./learn-link.js')).particleLink(engine, index));
-  mountHover(stage, engine, { view, explainIt: (index) => void explainIt(index) });
+  mountHover(stage, engine, { view, explainIt: (index) => void explainIt(engine, index) });
   byId('tabs').append(goButton(engine));
 
   void described.then(async (description) => {
@@ -122,9 +119,9 @@ export function mountInterface(engine, { grabs = false } = {}) {
     layout.follow(legend);
     for (const mountPart of [
       () => mountField(byId('field-body'), engine, description, shared),
-      () => mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools] }),
+      () => mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools], brush }),
       () => mountReport(byId('report-body'), engine, description, byId('report-title')),
-      () => loadMarks(engine, { stage, view, pins }),
+      () => loadMarks(engine, { stage, view, pins, brush }),
     ]) {
       // Between two parts the browser can handle input and draw.
       await new Promise((resolve) => setTimeout(resolve));
@@ -138,13 +135,22 @@ export function mountInterface(engine, { grabs = false } = {}) {
 }
 
 /**
+ * What a drag over the surface does in place of turning it.
+ * @param {boolean} grabs @returns {{ pins: Pins, brush: Brush }}
+ */
+const handsOf = (grabs) => ({
+  pins: signal(grabs ? [] : null),
+  brush: { on: signal(false), times: signal('0.5'), share: signal(0.06) },
+});
+
+/**
  * Loads the marks on the picture. The picture works without them.
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, view: HTMLElement, pins: Pins }} parts
+ * @param {{ stage: HTMLElement, view: HTMLElement, pins: Pins, brush: Brush }} parts
  */
-function loadMarks(engine, { stage, view, pins }) {
+function loadMarks(engine, { stage, view, pins, brush }) {
   import('./view/marks/index.js').then(
-    ({ mountAllMarks }) => mountAllMarks(engine, { stage, host: byId('canvas-host'), view, pins }),
+    ({ mountAllMarks }) => mountAllMarks(engine, { stage, host: byId('canvas-host'), view, pins, brush }),
     () => {},
   );
 }
@@ -174,6 +180,10 @@ function linkLearn(engine) {
     () => {},
   );
 }
+
+/** Opens the lesson at a particle. @param {Engine} engine @param {number} index */
+const explainIt = async (engine, index) =>
+  location.assign((await import('./learn-link.js')).particleLink(engine, index));
 
 /** Names the browser's tab after the surface. @param {Engine} engine */
 function nameTab(engine) {
@@ -266,7 +276,7 @@ function stopByEscape(engine, motion) {
  * @param {ShortcutTargets} page
  * @returns {Shortcut[]}
  */
-function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, open }) {
+function shortcutsOf(engine, { history, motion, pins, brush, print, timeline, hide, open }) {
   const along = (/** @type {'toggle' | 'back' | 'forward' | 'first' | 'all'} */ command) => () =>
     void timeline.then((made) => made?.[command]());
   return [
@@ -274,10 +284,11 @@ function shortcutsOf(engine, { history, motion, pins, print, timeline, hide, ope
     {
       keys: ['Escape'],
       shown: 'Esc',
-      label: 'Stop; leave Grab or measuring',
+      label: 'Stop; leave Grab, the brush or measuring',
       act: () => {
         if (motion.stop()) return;
         if (pins.peek()) pins.value = null;
+        else if (brush.on.peek()) brush.on.value = false;
         else if (engine.state.peek().view.measured) engine.setView({ measured: null });
         else if (engine.status.peek() === 'sampling' || engine.loading.peek()) engine.stop();
         else engine.pointOut(null);

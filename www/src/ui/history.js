@@ -97,6 +97,8 @@ export class History {
     const goesOn =
       what !== null &&
       what === this.#open &&
+      // A stroke of the brush is one change, however soon the next follows.
+      what !== 'settings.brush' &&
       // A camera motion is one change, however long it takes; fitting the surface again is another.
       (what === 'camera'
         ? present?.camera.fit === moment.camera.fit

@@ -161,6 +161,10 @@ export type Course = 'bounce' | 'loop';
 export type Motion = ReturnType<typeof createMotion>;
 /** Places of the surface that are pulled or held; null unless the surface is to be grabbed. */
 export type Pins = Signal<readonly Vec3[] | null>;
+/** What the brush does to the spacing: it multiplies it by so much, or erases what is painted. */
+export type BrushTimes = '0.25' | '0.5' | '2' | '4' | 'erase';
+/** The brush: whether it is taken, and its radius as a share of the diagonal of the box. */
+export type Brush = { on: Signal<boolean>; times: Signal<BrushTimes>; share: Signal<number> };
 export interface Scale {
   min: number;
   max: number;
@@ -223,6 +227,7 @@ export interface ShortcutTargets {
   history: ReturnType<typeof createHistory>;
   motion: Motion;
   pins: Pins;
+  brush: Brush;
   print: () => void;
   /** a key that is pressed before it has loaded acts as soon as it has */
   timeline: Promise<Record<'toggle' | 'back' | 'forward' | 'first' | 'all', () => void> | null>;

@@ -13,6 +13,7 @@ const ENGINE_FACE = [
   'engine/vector',
   'engine/pulls',
   'engine/given',
+  'engine/brush',
   'engine/patterns',
   'engine/columns',
   'engine/core-numbers',
@@ -36,6 +37,7 @@ const MAY_USE = {
   'engine/vector': ['engine/types'],
   'engine/pulls': ['engine/types', 'engine/vector'],
   'engine/given': ['engine/types'],
+  'engine/brush': ['engine/types', 'engine/vector'],
   'engine/patterns': ['engine/types'],
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
   'engine/columns': ['engine/types', 'engine/core-numbers', 'engine/vector'],
@@ -54,6 +56,7 @@ const MAY_USE = {
   // The state holds the camera's.
   'engine/share': [
     'engine/types',
+    'engine/brush',
     'engine/constants',
     'engine/columns',
     'engine/core-numbers',
@@ -85,6 +88,7 @@ const MAY_USE = {
     'engine/share',
     'engine/bundle',
     'engine/files',
+    'engine/brush',
     'engine/patterns',
     'engine/points/types',
   ],

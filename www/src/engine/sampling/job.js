@@ -5,6 +5,7 @@
  *
  * @module
  */
+import { painted } from '../brush.js';
 import { inSlices } from '../bundle/slices.js';
 import { MEASURED } from '../columns.js';
 import { MOST_STEPPED } from '../constants.js';
@@ -14,7 +15,7 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
- * @import { CoreProgress, Figures, Seconds } from '../types.js'
+ * @import { Bounds, CoreProgress, Figures, Seconds, Settings } from '../types.js'
  * @import { ColumnsMessage, DoneMessage, Env, Job, Memory, Mesh, Numbered } from './types.js'
  */
 
@@ -105,6 +106,8 @@ class Run {
   #isLive;
   #grows;
 
+  /** The box of the run, once it is found. @type {Bounds | null} */
+  #bounds = null;
   /** Time of the last message, a sign of life. */
   #beatMs;
   #isHanding;
@@ -167,7 +170,9 @@ class Run {
     if (job.kind === 'relax') return true;
     memory.held = 0;
     this.#beatMs = env.nowMs();
-    const slice = (/** @type {number} */ budget) => core.fit(job.settings, this.#isLive, budget);
+    // What is painted changes the box only by its margin, and needs its diagonal.
+    const { brush: _, ...settings } = job.settings;
+    const slice = (/** @type {number} */ budget) => core.fit(settings, this.#isLive, budget);
     const { made: answer, why } = await inSlices(slice, env, {
       after: (tookMs) => {
         this.seconds.seeding += tookMs / 1000;
@@ -177,6 +182,7 @@ class Run {
     if (why === 'stop') return this.#end('stopped');
     if (!answer) return false;
     if (!answer.ok) return this.#end('refused', answer.error.message);
+    this.#bounds = answer.bounds;
     env.post({ type: 'box', id: this.id, answer });
     return true;
   }
@@ -224,13 +230,14 @@ class Run {
     if (job.kind !== 'relax') {
       // Here the core looks for the surface; for a model that is most of the seeding.
       const before = env.nowMs();
-      this.followed = job.following?.some((settings) => core.follow(settings, false)) ?? false;
+      const inBox = (/** @type {Settings} */ settings) => (this.#bounds ? painted(settings, this.#bounds) : settings);
+      this.followed = job.following?.some((settings) => core.follow(inBox(settings), false)) ?? false;
       if (this.followed) {
         this.seconds.seeding += (env.nowMs() - before) / 1000;
         memory.held = this.id;
         return true;
       }
-      const start = core.start(job.settings);
+      const start = core.start(inBox(job.settings));
       this.seconds.seeding += (env.nowMs() - before) / 1000;
       if (!start.ok) return this.#end('refused', start.error.message);
       const { radius, predicted_count: predicted, warnings } = start;

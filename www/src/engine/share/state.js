@@ -4,6 +4,7 @@
  * @module
  */
 
+import { readDabs } from '../brush.js';
 import { FILE_SURFACE, MODEL, MOST_PARAMETERS, MOST_PULLS } from '../constants.js';
 import { LONGEST_PULL } from '../pulls.js';
 import { scanOf } from '../scans.js';
@@ -71,7 +72,7 @@ export function completeSettings(description, settings) {
   /** @type {Settings} */
   const all = {};
   for (const info of description.settings) all[info.name] = settings[info.name] ?? info.default;
-  return all;
+  return settings.brush ? { ...all, brush: settings.brush } : all;
 }
 
 /**
@@ -372,6 +373,8 @@ export function mergeState(now, given, description, hasFile) {
  * @returns {number | string | undefined}
  */
 export function validSetting(description, name, value) {
+  // What is painted is a setting of the page alone.
+  if (name === 'brush') return readDabs(value) ? /** @type {string} */ (value) : undefined;
   const info = description.settings.find((s) => s.name === name);
   if (!info) return undefined;
   if (info.kind === 'choice')

@@ -6,23 +6,25 @@ import { fill, h, once, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { plural } from '../format.js';
 import { createTrack } from '../track.js';
+import { createPaint } from './paint.js';
 import { createSetting } from './setting.js';
 import { arrange, countChanged, isDue } from './settings.js';
 
 /**
  * @import { Description, Engine, SettingInfo } from '../../engine/types.js'
- * @import { ButtonProps } from '../types.js'
+ * @import { Brush, ButtonProps } from '../types.js'
  */
 
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {Description} description
- * @param {{ head: HTMLElement[] }} extras buttons at the end of the first line
+ * @param {{ head: HTMLElement[], brush: Brush }} extras `head`: buttons at the end of the first line
  */
-export function mountSampling(body, engine, { settings }, { head }) {
+export function mountSampling(body, engine, { settings }, { head, brush }) {
   const { kind, plain, advanced } = arrange(settings);
-  const create = (/** @type {SettingInfo} */ info) => createSetting(engine, settings, info);
+  const create = (/** @type {SettingInfo} */ info) =>
+    createSetting(engine, settings, info, info.name === 'spacing' ? createPaint(engine, brush) : null);
   const [more, section] = createAdvanced(engine, settings, advanced, create);
   fill(
     body,

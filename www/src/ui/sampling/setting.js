@@ -10,14 +10,18 @@ import { createSelect } from '../select.js';
 import { createSlider } from '../slider.js';
 import { isSegmented, isShown } from './settings.js';
 
-/** @import { Engine, ReadonlySignal, SettingInfo } from '../../engine/types.js' */
+/**
+ * @import { Engine, ReadonlySignal, SettingInfo } from '../../engine/types.js'
+ * @import { createPaint } from './paint.js'
+ */
 
 /**
  * @param {Engine} engine
  * @param {SettingInfo[]} all
  * @param {SettingInfo} info
+ * @param {ReturnType<typeof createPaint> | null} [paint]  what stands beside the box of a text
  */
-export function createSetting(engine, all, info) {
+export function createSetting(engine, all, info, paint = null) {
   const value = computed(() => engine.state.value.settings[info.name] ?? info.default);
   const label = h(
     'span',
@@ -26,7 +30,7 @@ export function createSetting(engine, all, info) {
     info.unit ? h('span', { class: 'unit' }, ` ${info.unit}`) : null,
   );
   const create = { choice: createChoice, text: createText }[String(info.kind)] ?? createNumber;
-  const control = create(engine, info, value);
+  const control = create(engine, info, value, paint);
   const holds = computed(() => isShown(info, all, engine.state.value.settings));
   const element = h(
     'div',
@@ -95,8 +99,9 @@ function createNumber(engine, info, value) {
  * @param {Engine} engine
  * @param {SettingInfo} info
  * @param {ReadonlySignal<number | string>} value
+ * @param {ReturnType<typeof createPaint> | null} paint
  */
-function createText(engine, info, value) {
+function createText(engine, info, value, paint) {
   const wrong = signal('');
   const told = uniqueId(info.name);
   const box = h('input', {
@@ -126,7 +131,7 @@ function createText(engine, info, value) {
   const colour = button(
     {
       class: 'plain small',
-      hidden: () => value.value === '' || isShown(),
+      hidden: () => (value.value === '' && !paint?.isSeen()) || isShown(),
       press: () => engine.setView({ colour: 'radius' }),
     },
     'Show as colours',
@@ -134,7 +139,8 @@ function createText(engine, info, value) {
   return h(
     'div',
     { class: 'setting-text' },
-    h('div', { class: 'setting-line' }, box, colour),
+    h('div', { class: 'setting-line' }, box, paint?.paint),
+    h('div', { class: 'setting-more' }, paint?.clear, colour),
     h('p', { class: 'fault-line', id: told, role: 'alert', hidden: () => wrong.value === '' }, () =>
       marked(wrong.value),
     ),

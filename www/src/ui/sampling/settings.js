@@ -46,13 +46,14 @@ export function isSegmented({ kind, choices = [] }) {
 const settingValue = (all, values, name) => values[name] ?? all.find((info) => info.name === name)?.default;
 
 /**
- * Returns whether all conditions of a setting hold.
+ * Returns whether all conditions of a setting hold. Grading has an effect wherever sizes change, also by the spacing.
  * @param {SettingInfo} info
  * @param {SettingInfo[]} all
  * @param {Settings} values
  */
-export function isShown({ when = [] }, all, values) {
-  return when.every(({ name, value, equal = true }) => (settingValue(all, values, name) === value) === equal);
+export function isShown({ name, when = [] }, all, values) {
+  if (name === 'grading' && (values.spacing || values.brush)) return true;
+  return when.every((one) => (settingValue(all, values, one.name) === one.value) === (one.equal ?? true));
 }
 
 /**

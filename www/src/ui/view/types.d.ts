@@ -1,6 +1,6 @@
 // Types of what lies over the picture.
 import type { ReadonlySignal } from '@preact/signals-core';
-import type { Bounds, Ray } from '../../engine/types.js';
+import type { Bounds, Ray, Take } from '../../engine/types.js';
 import type { Motion, Toast } from '../types.js';
 
 export type Edges = { left: number; right: number; top: number; bottom: number };
@@ -48,6 +48,8 @@ export interface Mark {
   draw: (pen: Pen) => void;
   /** elements that the mark places itself */
   handles?: HTMLElement[];
+  /** what a press on the picture takes hold of, if anything */
+  take?: Take;
 }
 export interface OverlayParts {
   stage: HTMLElement;

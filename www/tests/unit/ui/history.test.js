@@ -42,6 +42,14 @@ describe('the history', () => {
     expect(history.move(-1)?.parameters).toEqual({ a: 60 });
   });
 
+  it('takes every stroke of the brush for one change, however soon the next follows', () => {
+    const history = new History();
+    for (const [k, brush] of ['', '0 0 0 1 2', '0 0 0 1 2;1 0 0 1 2'].entries())
+      history.record(shape({ settings: brush ? { brush } : {} }), k);
+    expect(history.move(-1)?.settings).toEqual({ brush: '0 0 0 1 2' });
+    expect(history.move(-1)?.settings).toEqual({});
+  });
+
   it('never comes back to half a formula', () => {
     const history = new History();
     history.record(shape({ formula: 'x' }), 0);

@@ -1,6 +1,7 @@
 /** Puts all kinds of marks on the picture. This folder is loaded once the page is ready. */
 import { axesMark, createScaleBar } from './axes.js';
 import { boxMark } from './box.js';
+import { brushMark, createBrushCard, createMiddle, Painter } from './brush.js';
 import { mountMarks } from './layer.js';
 import { createMeasureCard, measureMark } from './measure.js';
 import { createPinCard, pinMark } from './pins.js';
@@ -10,23 +11,34 @@ import { spotMark } from './spot.js';
 
 /**
  * @import { Engine } from '../../../engine/types.js'
- * @import { Pins } from '../../types.js'
+ * @import { Brush, Pins } from '../../types.js'
  */
 
 /**
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, host: HTMLElement, view: HTMLElement, pins: Pins }} parts  `host` holds the picture and
- *   lies in `stage`; `view` is the part that no panel covers
+ * @param {{ stage: HTMLElement, host: HTMLElement, view: HTMLElement, pins: Pins, brush: Brush }} parts  `host` holds
+ *   the picture and lies in `stage`; `view` is the part that no panel covers
  */
-export function mountAllMarks(engine, { stage, host, view, pins }) {
+export function mountAllMarks(engine, { stage, host, view, pins, brush }) {
+  const painter = new Painter(engine, brush);
+  const middle = createMiddle(painter);
+  const painted = brushMark(engine, { stage, host, brush, pins, painter, middle });
+  const pinned = pinMark(engine, stage, pins);
+  engine.takeWith((at, shift) => painter.take(at) ?? pinned.take?.(at, shift) ?? null);
   mountMarks(stage, engine, [
     sliceMark(engine),
     axesMark(engine),
     boxMark(engine, stage),
     planeMark(engine, stage),
     measureMark(engine, host),
-    pinMark(engine, stage, pins),
+    pinned,
+    painted,
     spotMark(engine),
   ]);
-  view.append(createScaleBar(engine), createMeasureCard(engine), createPinCard(engine, pins));
+  view.append(
+    createScaleBar(engine),
+    createMeasureCard(engine),
+    createPinCard(engine, pins),
+    createBrushCard(brush, painter, middle),
+  );
 }

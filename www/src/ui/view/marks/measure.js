@@ -1,19 +1,19 @@
 /** Measures the distance of two particles: rings on them, a line between them, and a card with the figures. */
 
-import { computed, signal } from '@preact/signals-core';
+import { computed } from '@preact/signals-core';
 import { button } from '../../button.js';
 import { h } from '../../dom.js';
 import { formatCount, formatSignificant } from '../../format.js';
 import { separation } from '../../space.js';
+import { aimOf } from './aim.js';
 
 /**
  * @import { Engine } from '../../../engine/types.js'
  * @import { Mark } from '../types.js'
  */
 
-/** Smallest radius of a ring around a particle, and the half size of the cross. */
+/** Smallest radius of a ring around a particle. */
 const RING_PX = 6;
-const CROSS_PX = 9;
 
 /** @param {Engine} engine */
 const present = (engine) => {
@@ -26,11 +26,7 @@ const present = (engine) => {
 /** @param {Engine} engine @param {HTMLElement} host  of the picture @returns {Mark} */
 export function measureMark(engine, host) {
   const chosen = computed(() => present(engine));
-  const focused = signal(false);
-  for (const type of ['focus', 'blur', 'keydown', 'pointerdown'])
-    host.addEventListener(type, () => {
-      focused.value = host.matches(':focus-visible');
-    });
+  const aim = aimOf(engine, [host]);
   return {
     shown: () => engine.state.value.view.measured !== null,
     draw(pen) {
@@ -47,11 +43,7 @@ export function measureMark(engine, host) {
         const { units } = separation(engine.columns, chosen.value);
         pen.text({ x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 - 10 }, formatSignificant(units, 4), 'figure strong');
       }
-      const aim = focused.value ? engine.project(engine.state.value.view.camera.target) : null;
-      if (aim) {
-        pen.line({ x: aim.x - CROSS_PX, y: aim.y }, { x: aim.x + CROSS_PX, y: aim.y }, 'cross');
-        pen.line({ x: aim.x, y: aim.y - CROSS_PX }, { x: aim.x, y: aim.y + CROSS_PX }, 'cross');
-      }
+      aim(pen);
     },
   };
 }

@@ -47,12 +47,12 @@ export function pinMark(engine, stage, pins) {
     });
     return handle;
   });
-  engine.takeWith((at, shift) => hand.take(at, shift));
   stage.addEventListener('keydown', (event) => hand.escape(event), true);
   live(stage, () => hand.follow());
   live(stage, () => void stage.toggleAttribute('data-grabs', pins.value !== null));
   return {
     handles: handles.map(({ knob }) => knob),
+    take: (at, shift) => hand.take(at, shift),
     shown: () => pins.value !== null,
     draw() {
       const places = pins.value ?? [];
