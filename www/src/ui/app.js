@@ -62,12 +62,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
   const history = createHistory(
     engine,
     computed(
-      () =>
-        motion.playing.value !== null ||
-        motion.turning.value ||
-        motion.filming.value ||
-        engine.trial.value === 'typing' ||
-        engine.dragging.value,
+      () => motion.playing.value !== null || motion.turning.value || motion.filming.value || engine.dragging.value,
     ),
   );
   /** The generation level that the timeline shows, in words. @type {Signal<Told | null>} */

@@ -1,5 +1,4 @@
 /** Every setting and what else a surface can be given, against another surface: what stays and what begins afresh. */
-import { computed } from '@preact/signals-core';
 import { expect, test } from 'vitest';
 import { TYPING_MS } from '../../src/engine/constants.js';
 import { createHistory } from '../../src/ui/history.js';
@@ -128,10 +127,7 @@ test('a formula put in the place of another as a whole ends what was set for tha
 test('one step back leads to the surface before, with all that was set for it, though the camera has turned', async () => {
   const p = await open();
   const { engine, debug } = p;
-  const history = createHistory(
-    engine,
-    computed(() => engine.trial.value === 'typing'),
-  );
+  const history = createHistory(engine, engine.dragging);
   await p.set({ surface: 'gyroid', settings: { radius_share: 0.06, thickness: 0.4, box_faces: 'closed' } });
   engine.lookFrom('front');
   await debug.still();

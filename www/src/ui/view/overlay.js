@@ -5,6 +5,7 @@ import { enlarge } from '../box.js';
 import { button } from '../button.js';
 import { h, live, marked } from '../dom.js';
 import { explain } from '../explain.js';
+import { meantBy, questionOf } from '../field/meant.js';
 import { verdictOf } from '../mesh-words.js';
 import { createTrack } from '../track.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
@@ -100,7 +101,7 @@ function meshOf(engine) {
 
 /** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */
 const EMPTY = {
-  constant: ['There is no x, y or z in it', 'Let the formula change with them.'],
+  constant: ['There is no x, y or z in it', 'Write x, y or z into the formula.'],
   undefined: ['Undefined in the whole box', 'Look for the root or logarithm of a negative number, or move the box.'],
 };
 
@@ -108,6 +109,22 @@ const EMPTY = {
 function emptyState(engine) {
   const { message, stop_reason } = engine.progress.peek();
   const nowhere = engine.field.peek()?.reach === 'nowhere';
+  const { surface, formula } = engine.state.peek();
+  const back = button({ press: () => engine.setSurface(surface) }, `Back to the ${nameOf(engine, surface)}`);
+  const stays = engine.columns.stale ? ' The last surface stays, dimmed, until there is another.' : '';
+  const about = engine.description.peek();
+  const meant = about ? meantBy(about, formula) : [];
+  if (meant.length > 0)
+    return [
+      h('h2', null, questionOf(meant)),
+      h('p', { class: 'quiet' }, `A surface is a formula in x, y and z.${stays}`),
+      h(
+        'div',
+        { class: 'empty-actions' },
+        meant.map(({ id, name }) => button({ press: () => engine.setSurface(id) }, `Show the ${name}`)),
+        back,
+      ),
+    ];
   const [title, remedy] =
     EMPTY[stop_reason ?? ''] ??
     (nowhere
@@ -118,19 +135,12 @@ function emptyState(engine) {
     message && !nowhere
       ? h('p', { class: `quiet ${stop_reason === 'constant' ? '' : 'reason'}` }, marked(message))
       : null,
-    h(
-      'p',
-      { class: 'quiet' },
-      `${remedy}${engine.columns.stale ? ' The last surface stays, dimmed, until there is another.' : ''}`,
-    ),
+    h('p', { class: 'quiet' }, `${remedy}${stays}`),
     h(
       'div',
       { class: 'empty-actions' },
       stop_reason === 'no_surface' && !nowhere ? button({ press: () => enlarge(engine) }, 'Double the box') : null,
-      button(
-        { press: () => engine.setSurface(engine.state.peek().surface) },
-        `Back to the ${nameOf(engine, engine.state.peek().surface)}`,
-      ),
+      back,
     ),
   ];
 }
