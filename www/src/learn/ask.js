@@ -99,7 +99,7 @@ export function mountQuestion(host, id, about, { lab, stops }) {
     skip.disabled = true;
     // Guesses from a completed round stay.
     const guesses = parts.map(({ input, isFirst }) => (isSkipped && !(isFirst && isSeen?.peek()) ? null : input.get()));
-    fill(result, h('p', null, 'The run is asked.'));
+    fill(result, h('p', null, 'Computing the answer'));
     try {
       await asked(guesses);
       // The pressed button no longer exists.

@@ -9,6 +9,7 @@ import { createNumber, offerNumber, toleranceNumber } from './drag.js';
 import { reasonOf } from './figure.js';
 import {
   KNOBS,
+  knobDifference,
   knobSide,
   knobWords,
   partsOf,
@@ -87,7 +88,9 @@ export async function createBench(host, lab, { locks = [], onChoice = () => {} }
     verdict.clear();
     const sides = [next.left, next.right].map(knobSide);
     const make = async () => [await sides[0].make(labOn(next.on)), await sides[1].make(labOn(next.on))];
-    await pair.show({ make, labels: () => sides.map(({ label }) => label), card: () => ({}), ...OF_KNOBS });
+    // The heads of the table are narrow on a phone.
+    const card = () => ({ names: knobDifference(next.left, next.right) });
+    await pair.show({ make, labels: () => sides.map(({ label }) => label), card, ...OF_KNOBS });
     const isNow = () => setup.peek() === next;
     if (isNow()) await verdict.tell(tries.peek().compare(next.right), isNow);
   }

@@ -96,10 +96,18 @@ function isPart(part, k) {
   return all.some(({ value }) => value === part) || (k === SEED && isPlace(part));
 }
 
+/** @param {readonly string[]} words */
+const listed = ([first, ...others]) => [first, ...others.map((word) => word.toLowerCase())].join(', ');
+
 /** All choices in words. @param {string} value */
-export function knobWords(value) {
-  const [first, ...others] = partsOf(value).map((part, k) => partWords(k, part));
-  return [first, ...others.map((words) => words.toLowerCase())].join(', ');
+export const knobWords = (value) => listed(partsOf(value).map((part, k) => partWords(k, part)));
+
+/** The choices in which two samplings differ, in words for each; all of them if none does. @param {string[]} values */
+export function knobDifference(...values) {
+  const [left, right] = values.map(partsOf);
+  const differ = left.flatMap((part, k) => (part === right[k] ? [] : [k]));
+  if (differ.length === 0) return values.map(knobWords);
+  return [left, right].map((parts) => listed(differ.map((k) => partWords(k, parts[k]))));
 }
 
 /** The sampling of a value. @param {string} value @returns {Side} */

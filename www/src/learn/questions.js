@@ -41,7 +41,7 @@ export const QUESTIONS = {
     right: (/** @type {Score[]} */ scores) => winnerOf(scores, 'six'),
     words: ([a, b]) => [
       `In B ${written('six', b)} of the particles have exactly six neighbours, in A ${written('six', a)}: the coloured ones have more or fewer.`,
-      'A looks evener, since it was relaxed: its particles were pushed apart until their gaps were alike. B was not.',
+      'A looks more even, since it was relaxed: its particles were pushed apart until their gaps were alike. B was not.',
     ],
   }),
   'predict-children': one({

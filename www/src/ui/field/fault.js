@@ -1,5 +1,5 @@
 /** Describes the error in a formula and its possible repairs, or returns a hint while the formula is unfinished. */
-import { questionOf } from './meant.js';
+import { questionOf } from '../meant.js';
 
 /**
  * @import { FieldFault } from '../../engine/types.js'

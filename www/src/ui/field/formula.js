@@ -6,9 +6,9 @@ import { givenOf } from '../../engine/given.js';
 import { button } from '../button.js';
 import { fill, h, live, marked, uniqueId } from '../dom.js';
 import { mathElement, mathLines } from '../mathml.js';
+import { meantBy } from '../meant.js';
 import { describeFault } from './fault.js';
 import { openFunctions } from './functions.js';
-import { meantBy } from './meant.js';
 import { createTextarea } from './textarea.js';
 import { kindOf } from './unchanging.js';
 

@@ -5,7 +5,7 @@ import { enlarge } from '../box.js';
 import { button } from '../button.js';
 import { h, live, marked } from '../dom.js';
 import { explain } from '../explain.js';
-import { meantBy, questionOf } from '../field/meant.js';
+import { meantBy, questionOf } from '../meant.js';
 import { verdictOf } from '../mesh-words.js';
 import { createTrack } from '../track.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';

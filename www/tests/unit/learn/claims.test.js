@@ -253,7 +253,7 @@ test('the pair at the beginning fools the eye, and the figure below it is of its
   const { right, words } = await answerOf('predict-first');
   expect(right).toEqual(['b']);
   expect(words).toContain('In B 83.7 % of the particles have exactly six neighbours, in A 73.1 %');
-  says('A looks evener, since it was relaxed');
+  says('A looks more even, since it was relaxed');
   says('B was not.');
   expect(OPENING.sides.map(({ settings }) => settings.relax_steps)).toEqual([undefined, 0]);
   // The eye sees gaps: A has the smaller hole and the wider closest pair.
@@ -383,7 +383,9 @@ test('what limits a sampling is said of one sampling, as placed', async () => {
   says('at least twelve have five, and 99.2 % is the most');
   expect((100 * (1 - 12 / valence.length)).toFixed(1)).toBe('99.2');
   const stack = await scoreAtEnd(await lab.run({ order: 'stack', relax_steps: 0 }));
-  says(`The queue has few seams; the stack has many, and ${rowOf('six').write(Number(stack.six))}.`);
+  says(
+    `The queue has few seams; the stack has many, and only ${rowOf('six').write(Number(stack.six))} have six neighbours.`,
+  );
   says('Relaxation lets the largest hole shrink from 1.49 to 1.23, and changes order and closest pair by chance only.');
   expect(written(rested)[1]).toBe('1.23');
   expect(DECIDING.map((key) => verdictOf([placed, rested], [key])?.side ?? null)).toEqual([null, 1, null]);
@@ -498,7 +500,7 @@ test.runIf(ALL).each(['ellipsoid', 'torus'])(
     expect(seed.run.end.positions).not.toEqual(usual.run.end.positions);
     expect(Math.abs(figures(seed).six - figures(usual).six)).toBeLessThan(0.05);
     for (const other of [stack, large, seed, still]) expect(isWorse(small.score, other.score)).toBe(true);
-    says('The ellipsoid can be brought below a half with six neighbours.');
+    says('On the ellipsoid, fewer than half can keep six neighbours.');
     expect(figures(all).six).toBeLessThan(0.5);
     // Put back alone, each of the three makes it better; that of the torus hardly meets itself more often by the stack.
     const blamed = await blame(own, all);

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { meantBy } from '../../../src/ui/field/meant.js';
+import { meantBy } from '../../../src/ui/meant.js';
 
 const description = /** @type {any} */ ({
   surfaces: [

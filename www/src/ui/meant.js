@@ -1,6 +1,6 @@
 /** Finds the surfaces that a user means by typing words instead of a formula. */
 
-/** @import { Description } from '../../engine/types.js' */
+/** @import { Description } from '../engine/types.js' */
 
 /** Largest number of surfaces offered. */
 const MOST = 3;
