@@ -204,6 +204,8 @@ export interface Notice {
   text: string;
   details?: string;
   action?: { label: string; run: () => void };
+  /** the page offers to open one */
+  asks?: 'file';
 }
 /**
  * The particle under the pointer, or the tapped one. x and y are CSS pixels within the canvas host. `residual`,

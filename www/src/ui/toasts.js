@@ -1,7 +1,7 @@
 /** Shows notices as short lines, which disappear after a while unless they need an answer. */
 
 import { button } from './button.js';
-import { fill, h, live } from './dom.js';
+import { fill, h, live, query } from './dom.js';
 
 /**
  * @import { Engine, Notice } from '../engine/types.js'
@@ -54,7 +54,7 @@ export function mountToasts(host, engine, isTold) {
       element,
       partsOf(notice, () => remove(id)),
     );
-    const stays = kind === 'error' || notice.action !== undefined || notice.details !== undefined;
+    const stays = kind === 'error' || Boolean(notice.action ?? notice.details ?? notice.asks);
     shown.set(id, { element, timer: stays ? 0 : count(id, element) });
   };
 
@@ -70,7 +70,11 @@ export function mountToasts(host, engine, isTold) {
 }
 
 /** The text of a notice, and its action. @param {Notice} notice @param {() => void} remove */
-function partsOf({ text, details, action }, remove) {
+function partsOf({ text, details, action, asks }, remove) {
+  const open = () => {
+    remove();
+    query(document, '.open-file').click();
+  };
   const act = () => {
     remove();
     action?.run();
@@ -79,6 +83,7 @@ function partsOf({ text, details, action }, remove) {
   return [
     h('p', null, text),
     action && button({ press: act }, action.label),
+    asks && button({ press: open }, 'Open the file…'),
     details && button({ class: 'plain', press: copy }, 'Copy report'),
     button({ icon: 'close', 'aria-label': 'Dismiss', press: remove }),
   ];

@@ -4,7 +4,7 @@
  * @module
  */
 import { decode, encode } from '../share/codec.js';
-import { mergeState } from '../share/state.js';
+import { IN_FILE, mergeState } from '../share/state.js';
 import { homeView } from '../share/view.js';
 import { description } from '../store.js';
 
@@ -15,6 +15,10 @@ import { description } from '../store.js';
 
 /** Largest width or height of a saved picture. */
 const LARGEST_PICTURE_PX = 8192;
+
+/** What is told of a link to the surface of a file. */
+const OF_FILE =
+  'The surface of this link is in a file, which a link cannot hold. Open the file here: the settings of the link are chosen already.';
 
 /** @type {Partial<Record<MeshFormat, string>>} */
 const MIME = { glb: 'model/gltf-binary', '3mf': 'model/3mf', stl: 'model/stl' };
@@ -49,7 +53,9 @@ export function shareCommands({ store, columns, picture: { viewer }, sampler, lo
         if (!initial) return;
       } else if (reset.length) {
         const what = [...new Set(reset)].join(', ');
-        store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
+        store.notice.value = reset.includes(IN_FILE)
+          ? { id: 'link', kind: 'warn', text: OF_FILE, asks: 'file' }
+          : { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
       }
       const whole = mergeState(state, { ...patch }, about, loader.hasFile).state;
       // A link without a camera gets the default camera, whose distance fits no particular surface.

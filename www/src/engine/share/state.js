@@ -19,6 +19,9 @@ import { homeView, validView } from './view.js';
  * } from '../types.js'
  */
 
+/** What a link does not hold: the surface of a file. */
+export const IN_FILE = 'the surface, which is in a file';
+
 /** Largest number in a plane, since the graphics card uses single precision. */
 const LARGEST_SINGLE = 3e38;
 
@@ -260,7 +263,7 @@ export function sanitize(raw, description, hasFile = false) {
     // surface.
     const { camera: _, ...view } = isRecord(raw.view) ? raw.view : {};
     const rest = sanitize({ settings: raw.settings, view }, description);
-    return { state: rest.state, reset: ['the surface, whose points or voxels are in a file', ...rest.reset] };
+    return { state: rest.state, reset: [IN_FILE, ...rest.reset] };
   }
 
   const id = typeof raw.surface === 'string' ? raw.surface : '';

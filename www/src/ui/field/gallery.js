@@ -4,7 +4,7 @@
  */
 
 import { batch, computed, signal } from '@preact/signals-core';
-import { FILE_SURFACE, FILE_TYPES, IMAGE_TYPES } from '../../engine/constants.js';
+import { FILE_SURFACE, FILE_TYPES, IMAGE_TYPES, MESH_TYPES } from '../../engine/constants.js';
 import { givenOf } from '../../engine/given.js';
 import { SCANS } from '../../engine/scans.js';
 import { button } from '../button.js';
@@ -227,14 +227,14 @@ function createSearch(query) {
   return input;
 }
 
-/** @param {string} name */
-const extensionOf = (name) => /\.([a-z0-9]{1,4})$/i.exec(name)?.[1].toUpperCase() ?? 'File';
+/** The extension of a file, without that of its compression. @param {string} name */
+const extensionOf = (name) => /\.([a-z0-9]{1,4})(\.gz)?$/i.exec(name)?.[1].toUpperCase() ?? 'File';
 
 /** Creates the button that opens a file, and its file chooser. @param {Engine} engine */
 function createOpen(engine) {
   const chooser = h('input', {
     type: 'file',
-    accept: `${FILE_TYPES},${IMAGE_TYPES}`,
+    accept: [FILE_TYPES, MESH_TYPES, IMAGE_TYPES].join(),
     multiple: true,
     hidden: true,
     on: {

@@ -162,6 +162,10 @@ test('labels are listed with their sizes, and a link asks for the file', async (
   await page.goto('about:blank');
   await page.goto(`./?backend=canvas2d${new URL(link).hash}`);
   await expect(page.locator('.toast')).toContainText('in a file');
+  const chooser = page.waitForEvent('filechooser');
+  await page.locator('.toast').getByRole('button', { name: 'Open the file…' }).click();
+  expect((await chooser).isMultiple()).toBe(true);
+  await expect(page.locator('.toast')).toHaveCount(0);
   await settled(page);
   await clean();
 });

@@ -5,6 +5,7 @@ import {
   clampSettings,
   defaultState,
   fieldRequest,
+  IN_FILE,
   mergeState,
   namesModel,
   sanitize,
@@ -221,7 +222,7 @@ describe('a surface made of points', () => {
     const link = await encode(file, description);
     const { state, reset, problem } = await decode(link, description);
     expect(problem).toBe(null);
-    expect(reset).toEqual(['the surface, whose points or voxels are in a file']);
+    expect(reset).toEqual([IN_FILE]);
     const home = defaultState(description);
     expect(state).toEqual({ ...home, settings: file.settings, view: { ...file.view, camera: home.view.camera } });
     // In the page that still has the file, it is found again.
