@@ -459,8 +459,8 @@ export interface EngineCommands {
   /** changes a part of the state and samples; returns what of it was not valid, in words */
   set: (patch: Record<string, unknown>) => string[];
   /** without panels; the surface fills its shorter side as it fills that of the window */
-  picture: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<ImageData>;
-  savePng: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<Blob>;
+  picture: (options?: PictureWish) => Promise<ImageData>;
+  savePng: (options?: PictureWish) => Promise<Blob>;
   /** the particles; `ply` has the record of what they were made from, `json` is the record alone */
   exportFile: (format: ParticleFormat, options?: { link?: string }) => Promise<Blob>;
   /** the program that makes the particles of the last run; rejects with the reason where there is none */
@@ -489,6 +489,16 @@ export interface EngineCommands {
 export type ParticleFormat = 'ply' | 'csv' | 'json';
 /** File formats for a mesh. */
 export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
+/** A picture to be drawn. `over` draws on it, and is told where a place is in it, null behind the eye. */
+export interface PictureWish {
+  width?: number;
+  height?: number;
+  transparent?: boolean;
+  over?: (
+    image: ImageData,
+    project: (place: ArrayLike<number>) => { x: number; y: number } | null,
+  ) => void | Promise<void>;
+}
 /** Languages of the program that makes the particles. */
 export type Language = 'rust' | 'js' | 'python' | 'shell';
 export type CodeAnswer = Answer<Code, string>;

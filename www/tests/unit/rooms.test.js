@@ -115,7 +115,8 @@ const MAY_USE = {
   'ui/field': ['ui/*', ...ENGINE_FACE],
   'ui/levels': ['ui/*', ...ENGINE_FACE],
   'ui/mesh': ['ui/*', ...ENGINE_FACE],
-  'ui/picture': ['ui/*', ...ENGINE_FACE],
+  // A saved picture has the voxels that lie over the one on the page.
+  'ui/picture': ['ui/*', 'ui/view/marks', ...ENGINE_FACE],
   'ui/report': ['ui/*', ...ENGINE_FACE],
   'ui/sampling': ['ui/*', ...ENGINE_FACE],
   'ui/view': ['ui/*', ...ENGINE_FACE],

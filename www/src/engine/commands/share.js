@@ -34,12 +34,14 @@ export const fetchExports = () => import('../share/exports.js');
 /** @param {Parts} parts @returns {ShareCommands} */
 export function shareCommands({ store, columns, picture: { viewer }, sampler, loader, adopt }) {
   /** @type {EngineCommands['picture']} */
-  async function picture({ width, height, transparent = false } = {}) {
+  async function picture({ width, height, transparent = false, over } = {}) {
     const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
       Math.min(LARGEST_PICTURE_PX, Math.max(1, Math.round(wanted ?? own)));
     const { screen } = viewer;
     const shot = await viewer.pixels(side(width, screen.width), side(height, screen.height), transparent);
-    return new ImageData(new Uint8ClampedArray(shot.pixels.buffer), shot.width, shot.height);
+    const image = new ImageData(new Uint8ClampedArray(shot.pixels.buffer), shot.width, shot.height);
+    await over?.(image, shot.project);
+    return image;
   }
 
   return {

@@ -632,9 +632,10 @@ export class Viewer {
   }
 
   /**
-   * Draws the picture, without panels, into a texture and reads it back.
+   * Draws the picture, without panels, into a texture and reads it back. `project` says where a place is in it.
    * @param {number} widthPx @param {number} heightPx @param {boolean} transparent
-   * @returns {Promise<{width: number, height: number, pixels: Uint8Array<ArrayBuffer>}>}
+   * @returns {Promise<{width: number, height: number, pixels: Uint8Array<ArrayBuffer>,
+   *   project: ReturnType<typeof fillFrame>}>}
    */
   async pixels(widthPx, heightPx, transparent) {
     const { device } = this.keeper;
@@ -654,7 +655,7 @@ export class Viewer {
     const size = /** @type {const} */ ([cssWidth || width, cssHeight || height]);
     const camera = this.#cameraOf({ width, height });
     const view = viewOf(camera, ...size, this.#scene.ball(), undefined, isParallel);
-    fillFrame(view, width / height, (cssWidth || width) / (cssHeight || height));
+    const project = fillFrame(view, { width, height }, (cssWidth || width) / (cssHeight || height));
     this.#tellView(renderer, view, this.columns.count);
     renderer.set_style(JSON.stringify({ ...this.#style(now), dim: 0, outline: -1 }));
     const picture = renderer.read_pixels(width, height, transparent);
@@ -662,16 +663,20 @@ export class Viewer {
     // A frame would find out whether the renderer has trapped meanwhile.
     const look = setInterval(() => this.frames.ask(), LOOK_MS);
     const pixels = await this.keeper.answered(picture).finally(() => clearInterval(look));
-    return { width, height, pixels };
+    return { width, height, pixels, project };
   }
 }
 
 /**
  * Enlarges a view so that the surface fills the shorter side of a picture as it fills the window's. A renderer shows
- * everything that the window shows, so with another aspect ratio the surface would be smaller.
- * @param {View} view @param {number} aspect  of the picture @param {number} windowAspect
+ * everything that the window shows, so with another aspect ratio the surface would be smaller. Returns where a place is
+ * in the picture then; null behind the eye.
+ * @param {View} view @param {{ width: number, height: number }} picture @param {number} windowAspect
+ * @returns {(place: ArrayLike<number>) => { x: number, y: number } | null}
  */
-function fillFrame({ packed }, aspect, windowAspect) {
+function fillFrame(view, { width, height }, windowAspect) {
+  const { packed } = view;
+  const aspect = width / height;
   const shorter = (/** @type {number} */ a) => Math.min(1, a);
   // Heights: the window has 1 and is scaled by this factor to lie within the picture, which has 1.
   const within = Math.min(1, aspect / windowAspect);
@@ -680,4 +685,10 @@ function fillFrame({ packed }, aspect, windowAspect) {
     packed[4 * k] *= factor;
     packed[4 * k + 1] *= factor;
   }
+  // The window within the picture.
+  const [w, h] = [height * within * windowAspect, height * within];
+  return (place) => {
+    const spot = projected({ ...view, clipFromWorld: packed, widthPx: w, heightPx: h }, place);
+    return spot && { x: spot.x + (width - w) / 2, y: spot.y + (height - h) / 2 };
+  };
 }

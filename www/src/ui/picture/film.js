@@ -4,6 +4,7 @@
  */
 import { effect } from '@preact/signals-core';
 import { placeAt, valueAt } from '../motion.js';
+import { sliceOver } from '../view/marks/slice.js';
 import { compose } from './compose.js';
 
 /**
@@ -73,7 +74,7 @@ const nextFrame = () => new Promise((resolve) => requestAnimationFrame(() => res
  * @param {Wish} wish @param {Context} context @param {boolean} [transparent]
  */
 export async function drawOn({ engine, size, parts }, context, transparent = false) {
-  context.putImageData(await engine.picture({ ...size, transparent }), 0, 0);
+  context.putImageData(await engine.picture({ ...size, transparent, over: sliceOver(engine) }), 0, 0);
   compose(context, parts());
 }
 

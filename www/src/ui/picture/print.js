@@ -3,6 +3,7 @@ import { givenOf } from '../../engine/given.js';
 import { isBareModel } from '../../engine/pulls.js';
 import { h } from '../dom.js';
 import { formatSignificant } from '../format.js';
+import { sliceOver } from '../view/marks/slice.js';
 import { captionOf } from './compose.js';
 
 /** @import { Engine } from '../../engine/types.js' */
@@ -34,7 +35,9 @@ async function createSheet(engine) {
   const { theme } = engine.state.peek().view;
   // A print is drawn in the light theme, for white paper.
   engine.setView({ theme: 'light' });
-  const png = await engine.savePng({ ...PICTURE_PX, transparent: true }).finally(() => engine.setView({ theme }));
+  const png = await engine
+    .savePng({ ...PICTURE_PX, transparent: true, over: sliceOver(engine) })
+    .finally(() => engine.setView({ theme }));
   const url = URL.createObjectURL(png);
   const [title, formula = '', credit = ''] = captionOf(engine);
   const picture = h('img', { src: url, alt: title, ...PICTURE_PX });

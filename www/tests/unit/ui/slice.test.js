@@ -1,6 +1,6 @@
 /** The picture of an image on the cutting plane. */
 import { describe, expect, test } from 'vitest';
-import { greysOf, pixelsOf, squareTo } from '../../../src/ui/view/marks/slice-pixels.js';
+import { greysOf, lay, pixelsOf, squareTo } from '../../../src/ui/view/marks/slice-pixels.js';
 
 const facts = /** @type {any} */ ({ histogram: Array(256).fill(100), range: [0, 256], labels: [] });
 const bright = { label: null, iso: 128, is_dark_inside: false };
@@ -56,5 +56,33 @@ describe('the picture of voxels on the cutting plane', () => {
     }
     expect(squareTo([spots[1], spots[0], spots[3], spots[2]], [40, 20])).toBe(null);
     expect(squareTo([null, ...spots.slice(1)], [40, 20])).toBe(null);
+  });
+
+  test('is laid over a saved picture where its corners are, cut along the outline, as opaque as it is', () => {
+    // Four voxels, red, green, blue and half of white, and the second side points up.
+    const pixels = Uint8ClampedArray.from([255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 128]);
+    const spots = [
+      { x: 4, y: 36 },
+      { x: 36, y: 30 },
+      { x: 30, y: 8 },
+      { x: 8, y: 4 },
+    ];
+    const image = { width: 40, height: 40, data: new Uint8ClampedArray(6400).fill(255) };
+    for (let k = 0; k < 1600; k += 1) image.data.set([0, 0, 0], 4 * k);
+    const outline = [spots[0], spots[1], spots[2], { x: 16, y: 6 }, { x: 7, y: 18 }];
+    lay(image, { pixels, size: [2, 2] }, spots, outline);
+    const at = (/** @type {number} */ x, /** @type {number} */ y) => [
+      ...image.data.slice(4 * (40 * y + x), 4 * (40 * y + x) + 4),
+    ];
+    expect(at(8, 30)).toEqual([255, 0, 0, 255]);
+    expect(at(31, 28)).toEqual([0, 255, 0, 255]);
+    expect(at(12, 14), 'upper left').toEqual([0, 0, 255, 255]);
+    expect(at(27, 11), 'upper right, half opaque').toEqual([128, 128, 128, 255]);
+    expect(at(9, 6), 'beyond the outline').toEqual([0, 0, 0, 255]);
+    expect(at(1, 1), 'beside it').toEqual([0, 0, 0, 255]);
+    const before = image.data.slice();
+    lay(image, { pixels, size: [2, 2] }, [...spots].reverse(), outline);
+    lay(image, { pixels, size: [2, 2] }, spots, [null, ...outline]);
+    expect(image.data).toEqual(before);
   });
 });

@@ -6,10 +6,10 @@ import { signal } from '@preact/signals-core';
 import { h } from '../../dom.js';
 import { planeOf, sectionOf } from '../../space.js';
 import { boxOf } from './box.js';
-import { pixelsOf, squareTo } from './slice-pixels.js';
+import { lay, pixelsOf, squareTo } from './slice-pixels.js';
 
 /**
- * @import { Bounds, CuttingPlane, Engine, Vec3 } from '../../../engine/types.js'
+ * @import { Bounds, CuttingPlane, Engine, PictureWish, Vec3 } from '../../../engine/types.js'
  * @import { Mark } from '../types.js'
  */
 
@@ -46,6 +46,30 @@ function sheetOf(bounds, plane, step) {
     outline: `polygon(${us.map((at, k) => `${(100 * (at - u0)) / width}% ${(100 * (vs[k] - v0)) / height}%`).join(', ')})`,
   };
 }
+
+/** The corners of a rectangle, first along its first side. @param {Sheet} sheet */
+const cornersOf = ({ corner, sides }) =>
+  [
+    [0, 0],
+    [1, 0],
+    [1, 1],
+    [0, 1],
+  ].map(([a, b]) => corner.map((c, k) => c + a * sides[0][k] + b * sides[1][k]));
+
+/**
+ * Returns what draws the voxels on the cutting plane over a picture of the surface, if there are any.
+ * @param {Engine} engine @returns {NonNullable<PictureWish['over']>}
+ */
+export const sliceOver = (engine) => async (image, project) => {
+  const [{ plane, bounds }, field, facts] = [engine.state.peek(), engine.field.peek(), engine.image.peek()];
+  const box = bounds ?? field?.bounds;
+  if (!plane || !box || !field?.image || !facts) return;
+  const sheet = sheetOf(box, plane, Math.min(...facts.spacing));
+  const values = sheet && (await engine.section(sheet));
+  if (!sheet || !values) return;
+  const pixels = pixelsOf(values, facts, field.image);
+  lay(image, { pixels, size: sheet.size }, cornersOf(sheet).map(project), sectionOf(box, plane).map(project));
+};
 
 /** @param {Engine} engine @returns {Mark} */
 export function sliceMark(engine) {
@@ -87,13 +111,7 @@ export function sliceMark(engine) {
       const { name, label, iso, is_dark_inside: isDark } = info;
       void fill(sheet, JSON.stringify([sheet, name, label, iso, isDark]));
       if (revision.value === 0 || !drawn) return;
-      const { corner, sides } = drawn;
-      const spots = [
-        [0, 0],
-        [1, 0],
-        [1, 1],
-        [0, 1],
-      ].map(([a, b]) => engine.project(corner.map((c, k) => c + a * sides[0][k] + b * sides[1][k])));
+      const spots = cornersOf(drawn).map((place) => engine.project(place));
       const matrix = squareTo(spots, drawn.size);
       if (!matrix) return;
       canvas.style.visibility = '';
