@@ -330,14 +330,14 @@ test('without the bundle the text stays and a figure says what is missing', { ta
   await expect(why).toHaveAttribute('data-state', 'still');
   await expect(why.locator('img')).toBeVisible();
   await expect(page.locator('[data-figure="opening"] + .figure-status')).toContainText('did not load');
-  await expect(page.getByText('Particles are such a list')).toBeVisible();
+  await expect(page.getByText('the particles are that list')).toBeVisible();
 });
 
 test.describe('without JavaScript', () => {
   test.use({ javaScriptEnabled: false });
   test('the article is complete, with a still for every figure', { tag: '@all' }, async ({ page }) => {
     await page.goto('./learn/');
-    await expect(page.getByText('Particles are such a list')).toBeVisible();
+    await expect(page.getByText('the particles are that list')).toBeVisible();
     await expect(page.locator('.opening noscript p')).toBeVisible();
     const stills = page.locator('.still');
     await expect(stills).toHaveCount(FIGURES.length);

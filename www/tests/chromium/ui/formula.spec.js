@@ -42,6 +42,19 @@ test('a formula is typed, and mended', async ({ page }) => {
     expect((await state(page)).parameters.k).toBeUndefined();
   });
 
+  await test.step('more than three sliders scroll in their room, and the gallery keeps its place', async () => {
+    await afresh(page, { hash: COARSE });
+    const top = async () => (await page.locator('.gallery').boundingBox())?.y;
+    const before = await top();
+    await typeFormula(page, 'a x^2 + b y^2 + c z^2 + d x y = k');
+    const last = page.getByRole('slider', { name: /k$/ });
+    await expect(last).toBeAttached();
+    await settled(page);
+    expect(await top()).toBe(before);
+    await last.focus();
+    await expect(last).toBeInViewport();
+  });
+
   await test.step('an error names its place, the last surface stays, and a press on the suggestion mends it', async () => {
     await afresh(page, { hash: COARSE });
     const before = await report(page);

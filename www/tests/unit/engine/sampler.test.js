@@ -255,6 +255,20 @@ describe('a run', () => {
   });
 });
 
+test('a job that a stop drops leaves the figures that are being measured on their way', () => {
+  const { sampler, store, say, accept } = page();
+  sampler.sample(request('x'));
+  accept(1);
+  say(columnsMessage(1, 7));
+  say({ ...done(1, 'complete', 7), reportFollows: true });
+  sampler.sampleLive(request('y'), 3);
+  sampler.stop();
+  say({ type: 'dropped', id: 2 });
+  expect([store.status.value, store.progress.value.phase]).toEqual(['measuring', 'quality']);
+  say(reportMessage(1, 7));
+  expect([store.status.value, store.progress.value.phase]).toEqual(['rest', 'done']);
+});
+
 test('a run that the core refuses is said so, with the last surface kept, dimmed', () => {
   const { store, columns, say, complete, start } = page();
   start(1);

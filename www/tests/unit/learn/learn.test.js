@@ -2,7 +2,7 @@
 import { expect, test } from 'vitest';
 import { readAddress, stopFor, writeAddress } from '../../../src/learn/address.js';
 import { Stops } from '../../../src/learn/answers.js';
-import { SEED, seedAt, turned, USUAL } from '../../../src/learn/knobs.js';
+import { knobDifference, SEED, seedAt, turned, USUAL } from '../../../src/learn/knobs.js';
 import { asFineEverywhere, isBare, nearestDistances, ringsOf, sharpestBend } from '../../../src/learn/measure.js';
 import { cellOf } from '../../../src/learn/patch.js';
 import { bestOf, rowOf, scoreOf, verdictOf } from '../../../src/learn/score.js';
@@ -325,4 +325,11 @@ test('the cell of a place of the hexagonal pattern has six corners, and that of 
       5,
     ),
   ).toHaveLength(4);
+});
+
+test('the heads of a comparison name what differs, and all choices where nothing does', () => {
+  const other = turned(turned(USUAL, 0, 'stack'), 1, '0.95');
+  expect(knobDifference(USUAL, other)).toEqual(['Queue, 1.4 r', 'Stack, 1.9 r']);
+  expect(knobDifference(USUAL, turned(USUAL, 2, '0'))).toEqual(['Ten steps', 'No steps']);
+  expect(knobDifference(USUAL, USUAL)).toEqual(Array(2).fill('Queue, 1.4 r, ten steps, seed 0'));
 });
