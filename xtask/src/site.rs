@@ -19,7 +19,7 @@ use crate::project::Project;
 ///
 /// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a
 /// commit of its own, which says why; no code is contorted to stay under one.
-const FIRST_PAINT_BUDGET_KB: f64 = 102.0;
+const FIRST_PAINT_BUDGET_KB: f64 = 104.0;
 
 /// The largest gzip size, in kB, of what the lesson's page loads before any WebAssembly; its
 /// figures start after that.
