@@ -1234,8 +1234,8 @@ export type Progress = {
   relax_steps: number,
   /** Points at which the survey and all phases have evaluated the field so far, whatever
   * derivatives they asked for. A function is called more often: several times for each
-  * derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the
-  * proof, which are not counted. */
+  * derivative by differences ([`FnField`](crate::field::FnField)), and for the box, the set-up
+  * and the proof, which are not counted. */
   evaluations: number,
   /** Estimated share of the work done. It never decreases until more work is requested. */
   fraction: number,
