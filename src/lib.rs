@@ -68,8 +68,9 @@
 //! three-dimensional images; both of them sample triangle meshes anew. With `parallel` all threads
 //! of the current [rayon](https://docs.rs/rayon) pool share measuring, fits to points and parts of
 //! the mesh, natively; the results are the same. Functions of the program are then called from
-//! several threads at once. A program that does such work in [steps](run::Reporting::step) takes them in
-//! a thread of the pool, as within `rayon::scope`: another thread would wait for each share.
+//! several threads at once. A program that does such work in [steps](run::Reporting::step) takes
+//! them in a thread of the pool, as within `rayon::scope`: another thread would wait for each
+//! share.
 //!
 //! # Glossary
 //!
@@ -145,8 +146,8 @@ pub mod session;
 pub mod slices;
 #[doc(hidden)]
 pub mod spatial;
-#[doc(hidden)]
-pub mod topology;
+
+mod topology;
 
 #[cfg(all(test, feature = "points"))]
 mod page_types {

@@ -45,8 +45,8 @@ pub struct Particles {
     pub level: Vec<u32>,
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
-    /// The patch of each row, as the label of its piece: see [`Pieces::label`]. Empty if the surface
-    /// has a single patch and no particles at tips.
+    /// The patch of each row, as the label of its piece: see [`Pieces::label`]. Empty if the
+    /// surface has a single patch and no particles at tips.
     ///
     /// [`Pieces::label`]: crate::field::Pieces::label
     pub patch: Vec<u32>,
@@ -477,7 +477,8 @@ impl Particles {
             *first = place.min(*first);
             *twin = *first;
         }
-        // The end of a segment whose particle is removed becomes NO_PARENT: `keep_segments` drops it.
+        // The end of a segment whose particle is removed becomes NO_PARENT: `keep_segments` drops
+        // it.
         self.segments.iter_mut().flatten().for_each(|row| *row = first[*row as usize]);
     }
 

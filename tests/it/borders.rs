@@ -6,10 +6,10 @@ use glam::Vec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
+use marching_particles::mesh::Topology;
 use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Sampling, Settings, SizeMode};
-use marching_particles::topology::Topology;
 use proptest::prelude::*;
 
 fn settings(method: Method, count: u32, seed: u64) -> Settings {

@@ -6,10 +6,10 @@ use crate::runs::of_gallery;
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::{self, Surface};
 use marching_particles::math::Bounds;
+use marching_particles::mesh::Component;
 use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Settings, SizeMode};
-use marching_particles::topology::Component;
 
 fn of_count(count: u32, seed: u64, match_tolerance: f64, relax_steps: u32) -> Settings {
     settings!(size_mode: SizeMode::Count, count, seed, match_tolerance, relax_steps; ..Settings::default())

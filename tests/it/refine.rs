@@ -5,10 +5,10 @@ use crate::runs::{begun, figures, sampled, sampled_in_any_steps, shared};
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
+use marching_particles::mesh::Topology;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self};
 use marching_particles::sampler::{Method, Phase, Refusal, Sampling, Search, Settings, SizeMode};
-use marching_particles::topology::Topology;
 
 fn refined(count: u32, seed: u64) -> Settings {
     settings!(method: Method::Refined, size_mode: SizeMode::Count, count, seed; ..Settings::default())

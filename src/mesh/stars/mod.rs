@@ -314,8 +314,8 @@ impl Stars {
         self.push(ball, star, known_sq.min(f32::MAX), is_certain);
     }
 
-    /// The [completed](Stars::completed) stars of all sheets in the order of a tree over their rows;
-    /// the first `on_creases` rows are on creases. A row that was left out has no neighbours.
+    /// The [completed](Stars::completed) stars of all sheets in the order of a tree over their
+    /// rows; the first `on_creases` rows are on creases. A row that was left out has no neighbours.
     pub(crate) async fn gathered(
         sheets: &Sheets,
         tree: &Tree,

@@ -201,7 +201,8 @@ impl Cutter {
     ) -> bool {
         let n = hole.len();
         let at = |i: usize, j: usize| i * n + j;
-        // An edge of the rim has a triangle only on its left; filling another hole may have made it.
+        // An edge of the rim has a triangle only on its left; filling another hole may have made
+        // it.
         let is_taken =
             |patch: &Patch, a: u32, b: u32| a == b || patch.has_edge(a, b) || rim.has(a, b) || rim.has(b, a);
         self.best.clear();
