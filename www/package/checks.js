@@ -27,6 +27,8 @@ export function flag(name, value) {
  * @param {string} name @param {unknown} value
  */
 export function vectors(name, value) {
+  if (typeof value === 'string')
+    throw new InputError(`${name}: numbers, or the bytes of a file, and not its name ${shown(value)}.`);
   const isArray = Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
   const rows = Array.isArray(value) && Array.isArray(value[0]) ? value.flat() : value;
   const all = isArray ? Float64Array.from(/** @type {ArrayLike<number>} */ (rows), Number) : null;

@@ -5,7 +5,7 @@
  * @module
  */
 import { shown } from './checks.js';
-import { DisposedError, errorOf, InputError, WorkerError } from './errors.js';
+import { DisposedError, errorOf, InputError, NoSurfaceError, WorkerError } from './errors.js';
 import { checked, checkedCalls, paramsOf } from './options.js';
 import { write } from './write.js';
 
@@ -268,6 +268,12 @@ export function createSampler(open, openHere) {
     const client = how.isHere ? here : there;
     const question = (/** @type {number} */ id) =>
       /** @type {const} */ ({ type: 'sample', id, field: request, functions, settings, given, measure });
-    return new Sample(client, await client.ask(question, how), how);
+    const answer = await client.ask(question, how).catch((error) => {
+      // Its argument is a number, of which p[0] is undefined.
+      if (error instanceof NoSurfaceError && typeof field === 'function' && field.length === 1)
+        throw new NoSurfaceError(`${error.message} The function takes one argument, and is called with x, y and z.`);
+      throw error;
+    });
+    return new Sample(client, answer, how);
   };
 }

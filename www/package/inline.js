@@ -9,7 +9,7 @@ import points from '../src/wasm/points/points_bg.wasm';
 import { createSampler } from './client.js';
 import { openHere } from './here.js';
 
-export * from './errors.js';
+export { DisposedError, FieldError, FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
 export { difference, intersection, offset, smoothUnion, union } from './solids.js';
 
 const open = openHere(async (name) => ({ core, points })[name]);

@@ -4,7 +4,7 @@ import { createSampler } from './client.js';
 import { openHere } from './here.js';
 import { load } from './load-node.js';
 
-export * from './errors.js';
+export { DisposedError, FieldError, FormulaError, InputError, NoSurfaceError, WorkerError } from './errors.js';
 export { difference, intersection, offset, smoothUnion, union } from './solids.js';
 
 /** @param {import('./protocol.js').Heard} heard @returns {import('./protocol.js').Line} */

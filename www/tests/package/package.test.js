@@ -4,17 +4,12 @@ import { cpSync, existsSync, readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test, vi } from 'vitest';
-import { GYROID, install, programOf } from './packed.js';
+import { GYROID, install, programOf, ROUND } from './packed.js';
 
 const { runs } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.json', import.meta.url), 'utf8'));
 const golden = runs.find((/** @type {{name: string}} */ { name }) => name === GYROID.golden);
 
 const SPHERE = 'x^2 + y^2 + z^2 = a';
-/** Points of a ball, on a spiral from pole to pole. */
-const ROUND = Array.from({ length: 400 }, (_, i) => {
-  const [z, angle] = [1 - (2 * i + 1) / 400, 2.399963 * i];
-  return [Math.sqrt(1 - z * z) * Math.cos(angle), Math.sqrt(1 - z * z) * Math.sin(angle), z];
-}).flat();
 /** @type {ReturnType<typeof install>} */
 let there;
 /** @type {typeof import('../../package/index.js')} */
@@ -22,9 +17,7 @@ let made;
 
 beforeAll(async () => {
   there = install(['three', '@types/node', '@types/three']);
-  made = await import(
-    /* @vite-ignore */ pathToFileURL(join(there.project, 'node_modules/marching-particles/node.js')).href
-  );
+  made = await there.module();
 }, 120_000);
 afterAll(() => there.remove());
 
@@ -318,7 +311,7 @@ test('a program on the command line of Node', () => {
 test('a program and the examples are checked by strict TypeScript', () => {
   there.write(
     'program.ts',
-    `import { FormulaError, sample, type Field, type Mesh, type Sample } from 'marching-particles';
+    `import { FormulaError, sample, type Field, type Mesh, type Options, type Sample } from 'marching-particles';
 import 'marching-particles/element';
 import { createView, type View } from 'marching-particles/view';
 export async function ball(radius: number): Promise<Mesh> {
@@ -327,6 +320,18 @@ export async function ball(radius: number): Promise<Mesh> {
   if (first > 0) await ball.moved({ a: 2 });
   return ball.mesh();
 }
+export const every: Required<Options> = {
+  count: 500, spacing: '0.02 + 0.1 hypot(x, y)', radius: '1%', bounds: { min: [-1, -1, -1], max: [1, 1, 1] },
+  beyondPoints: 'kept', formula: 'max(model, z)', params: { a: 1 }, iso: 0.5, label: 3, smooth: 1, darkInside: true,
+  closeBorder: true, edges: 'auto', borders: true, adaptive: true, law: 'max_curvature', chordError: '0.1%',
+  curvatureScale: 0.1, radiusMin: 0.001, radiusMax: '2%', grading: 0.2, closed: true, periodic: true,
+  thickness: '0.2 + 0.1x', method: 'refined', pattern: 'blue', exactly: true, relax: 3, matchTolerance: 0.7,
+  gaps: 'leave', seed: 7, maxParticles: 10_000, values: { H: '(k_1 + k_2)/2', height: (x, y, z) => z }, measure: true,
+  signal: AbortSignal.timeout(1000), onProgress: ({ fraction }) => console.log(fraction),
+};
+export const six = ({ report, change }: Sample): (number | null | undefined)[] => [
+  report?.quality?.six_neighbours, report?.places.holes[0]?.radius, change?.to_new.largest,
+];
 export const fields: Field[] = [
   'x^2 + y^2 + z^2 = 1',
   (x, y, z) => Math.hypot(x, y, z) - 1,
@@ -714,6 +719,8 @@ describe('what is wrong has a name and says what to do', () => {
     ['NoSurfaceError', 'no zero', 'x^2 + 1', {}],
     ['NoSurfaceError', 'f has no value anywhere', () => NaN, {}],
     ['NoSurfaceError', 'f has the same value', () => 1, {}],
+    ['NoSurfaceError', 'is called with x, y and z', (/** @type {any} */ p) => p[0] - 1, {}],
+    ['InputError', 'and not its name “a.glb”', { points: 'a.glb' }, {}],
   ])('%s: %s', async (name, words, field, options) => {
     const answer = made.sample(/** @type {any} */ (field), /** @type {any} */ (options));
     await expect(answer).rejects.toMatchObject({ name, message: expect.stringContaining(words) });

@@ -3,9 +3,15 @@ import { execFileSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 
 const www = fileURLToPath(new URL('../..', import.meta.url));
+
+/** Points of a ball, on a spiral from pole to pole. */
+export const ROUND = Array.from({ length: 400 }, (_, i) => {
+  const [z, angle] = [1 - (2 * i + 1) / 400, 2.399963 * i];
+  return [Math.sqrt(1 - z * z) * Math.cos(angle), Math.sqrt(1 - z * z) * Math.sin(angle), z];
+}).flat();
 
 /** A surface with its digest in `tests/golden`, as the options of the package have it. */
 export const GYROID = {
@@ -45,6 +51,8 @@ export function install(others = []) {
       writeFileSync(path, text);
       return path;
     },
+    /** The package as an import of this test. @returns {Promise<typeof import('../../package/index.js')>} */
+    module: () => import(/* @vite-ignore */ pathToFileURL(join(modules, 'marching-particles/node.js')).href),
     remove: () => rmSync(project, { recursive: true, force: true }),
   };
 }

@@ -1,14 +1,7 @@
 /** Solids of several fields in the packed package. */
-import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { install } from './packed.js';
+import { install, ROUND } from './packed.js';
 
-/** Points of a ball, on a spiral from pole to pole. */
-const ROUND = Array.from({ length: 400 }, (_, i) => {
-  const [z, angle] = [1 - (2 * i + 1) / 400, 2.399963 * i];
-  return [Math.sqrt(1 - z * z) * Math.cos(angle), Math.sqrt(1 - z * z) * Math.sin(angle), z];
-}).flat();
 /** @type {ReturnType<typeof install>} */
 let there;
 /** @type {typeof import('../../package/index.js')} */
@@ -16,9 +9,7 @@ let made;
 
 beforeAll(async () => {
   there = install();
-  made = await import(
-    /* @vite-ignore */ pathToFileURL(join(there.project, 'node_modules/marching-particles/node.js')).href
-  );
+  made = await there.module();
 }, 120_000);
 afterAll(() => there.remove());
 
