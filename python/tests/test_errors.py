@@ -9,6 +9,7 @@ import time
 
 import numpy as np
 import pytest
+import trimesh
 
 import marching_particles as mp
 
@@ -40,10 +41,14 @@ def test_a_misspelt_function_has_a_suggestion():
 def test_what_is_a_file_or_an_array_of_points_is_said_where_to_give(tmp_path):
     path = tmp_path / "scan.xyz"
     path.write_text("0 0 0\n")
-    with pytest.raises(ValueError, match="is a file: give it to fit_points, TriangleMesh or remesh"):
+    with pytest.raises(ValueError, match="is a file: give it to fit_points, Image or remesh"):
         mp.sample(str(path))
     with pytest.raises(TypeError, match="and not ndarray: fit_points makes a field of points"):
         mp.sample(np.zeros((9, 3)))
+    with pytest.raises(TypeError, match="and not ndarray: Image makes a field of voxels"):
+        mp.sample(np.zeros((9, 9, 9)))
+    with pytest.raises(TypeError, match="and not Trimesh: remesh samples a mesh"):
+        mp.sample(trimesh.creation.box())
 
 
 def test_an_unknown_parameter_is_named():

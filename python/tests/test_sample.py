@@ -272,8 +272,9 @@ def test_other_threads_go_on_while_a_formula_is_sampled():
 def test_the_stub_has_the_signatures_of_the_package():
     stub = ast.parse((Path(mp.__file__).parent / "__init__.pyi").read_text())
     names = {node.name: node for node in stub.body if hasattr(node, "name")}
-    # The types of the report have a module of their own.
-    assert set(mp.__all__) - {"__version__", "Report"} == set(names)
+    # The types of reports have a module of their own.
+    others = {"__version__", "Report", "ModelReport", "MeshChange"}
+    assert set(mp.__all__) - others == set(names)
     for name in ("sample", "field", "fit_points"):
         arguments = names[name].args
         defaults = zip(arguments.kwonlyargs, arguments.kw_defaults)
@@ -335,6 +336,13 @@ def shape_of(kind, value, path="report"):
 )
 def test_the_report_has_the_members_of_its_type(field, options):
     shape_of(mp.Report, mp.sample(field, **options).report)
+
+
+def test_the_reports_of_points_and_meshes_have_the_members_of_their_types():
+    box = trimesh.creation.box((1, 2, 3))
+    for points in (box.subdivide().subdivide(), box.sample(300)):
+        shape_of(mp.ModelReport, mp.fit_points(points, centres=100).report)
+    shape_of(mp.MeshChange, mp.remesh(box, count=500).change)
 
 
 def test_every_setting_of_the_core_is_an_argument():

@@ -22,7 +22,7 @@ from ._fields import (
 )
 from ._image import Image
 from ._remesh import TriangleMesh, remesh
-from ._report import Report
+from ._report import MeshChange, ModelReport, Report
 from ._sample import Mesh, Sample, SampleWarning, sample
 
 __all__ = [
@@ -32,7 +32,9 @@ __all__ = [
     "FormulaError",
     "Image",
     "Mesh",
+    "MeshChange",
     "Model",
+    "ModelReport",
     "Report",
     "Sample",
     "SampleWarning",

@@ -185,7 +185,7 @@ def field_of(field, params=None, gradient=None, name="field"):
         if gradient is not None:
             raise TypeError("gradient belongs to a function: a formula has its own")
         if os.path.isfile(field):
-            raise ValueError(f"{field} is a file: give it to fit_points, TriangleMesh or remesh")
+            raise ValueError(f"{field} is a file: give it to fit_points, Image or remesh")
         return _core.Field.formula(field, _parameters(params))
     if params is not None:
         raise TypeError("params belongs to a formula: give a function its values by a closure")
@@ -197,7 +197,11 @@ def field_of(field, params=None, gradient=None, name="field"):
         _check_parameters(field, name)
         slope = None if gradient is None else _checked(gradient, "gradient", (3,))
         return _core.Field.function(_checked(field, name, ()), slope)
-    hint = ": fit_points makes a field of points" if isinstance(field, np.ndarray) else ""
+    if isinstance(field, np.ndarray):
+        maker = "Image makes a field of voxels" if field.ndim == 3 else "fit_points makes a field of points"
+        hint = f": {maker}"
+    else:
+        hint = ": remesh samples a mesh" if hasattr(field, "faces") else ""
     raise TypeError(
         f"{name} must be a formula (str), a function, a Model or another Field, and not "
         f"{type(field).__name__}{hint}"

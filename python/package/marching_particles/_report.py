@@ -1,6 +1,6 @@
-"""The report of a run as a type: the members that ``Sample.report`` has.
+"""Reports as types: the members of ``Sample.report``, ``Model.report`` and ``Sample.change``.
 
-They are those of the library's ``Report``, which documents each.
+They are those of the library's ``Report``, ``ModelInfo`` and ``MeshChange``, which document each.
 """
 
 from __future__ import annotations
@@ -145,3 +145,45 @@ class Report(_Calls):
     quality_before: Union[Figures, None]
     nearest_histogram: Histogram
     places: Places
+
+
+class GivenTopology(TypedDict):
+    components: int
+    euler: int
+    borders: int
+
+
+class GivenMesh(TypedDict):
+    area: float
+    topology: Union[GivenTopology, None]
+
+
+class ModelReport(TypedDict):
+    name: str
+    credit: str
+    points: int
+    centres: int
+    condition: float
+    residual_mean: float
+    residual_95: float
+    residual_max: float
+    farthest: tuple[float, float, float]
+    mesh: Union[GivenMesh, None]
+    beyond_share: float
+    normals: Literal["given", "from_mesh", "estimated"]
+    warnings: list[str]
+
+
+class MeshDistances(TypedDict):
+    mean: float
+    most: float
+    largest: float
+
+
+class MeshChange(TypedDict):
+    diagonal: float
+    to_new: MeshDistances
+    to_old: MeshDistances
+    volume: tuple[float, float]
+    area: tuple[float, float]
+    edges: Union[float, None]
