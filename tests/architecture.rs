@@ -63,7 +63,10 @@ const ROOMS: [Room; 6] = [
             ),
             (
                 "session",
-                &["math", "slices", "field", "extent", "image", "remesh", "sampler", "run", "export"],
+                &[
+                    "math", "slices", "field", "extent", "image", "remesh", "sampler", "quality", "run",
+                    "export",
+                ],
             ),
             // The paper written for reading, and the oracle of the fast fronts: it knows nothing of
             // them.

@@ -52,7 +52,7 @@ pub(crate) fn of_spacing(fault: &Fault, text: &str) -> PyErr {
     }
 }
 
-fn of_text(fault: &Fault, text: &str) -> PyErr {
+pub(crate) fn of_text(fault: &Fault, text: &str) -> PyErr {
     // Python counts characters where the session counts UTF-16 code units.
     let characters = |unit: u32| {
         let before: Vec<u16> = text.encode_utf16().take(unit as usize).collect();

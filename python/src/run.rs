@@ -6,7 +6,7 @@ use marching_particles::export::{RecordText, Vertices};
 use marching_particles::quality::NamedValues;
 use marching_particles::run::{Measured, Value};
 use marching_particles::session::{
-    Asked, Fault, Lengths, Session, SolidSettings, SpacingText, without_effect,
+    Asked, Fault, FileRecord, Lengths, Session, SolidSettings, SpacingText, ValueText, without_effect,
 };
 use marching_particles::{Bounds, Settings, Spacing, Warning};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -57,16 +57,6 @@ pub(crate) fn sample(
     }
     let bounds = bounds.map(|(min, max)| Bounds { min, max });
     let measured = if measure { Measured::Particles } else { Measured::Nothing };
-    let value = |(name, function)| {
-        let value = match function {
-            Function::Formula(text) => {
-                Value::parse(&text).map_err(|error| errors::of_formula(&error, &text))?
-            }
-            Function::Field(function) => Value::by(Arc::clone(&function.get().field)),
-        };
-        Ok((name, value))
-    };
-    let values = values.into_iter().map(value).collect::<PyResult<Vec<_>>>()?;
     py.detach(|| run(field, options, spacing, bounds, &values, measured, progress.as_ref()))
 }
 
@@ -82,7 +72,7 @@ fn run(
     Options { settings, lengths, solid, .. }: Options,
     spacing: Option<Function>,
     bounds: Option<Bounds>,
-    values: &[(String, Value)],
+    values: &[(String, Function)],
     measured: Measured,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<Sample> {
@@ -105,6 +95,14 @@ fn run(
         }
         Some(Function::Field(function)) => session.space_by(Spacing::by(Arc::clone(&function.get().field))),
     }
+    let value = |(name, function): &(String, Function)| {
+        let value = match function {
+            Function::Formula(text) => session.value(text).map_err(|fault| errors::of_text(&fault, text))?,
+            Function::Field(function) => Value::by(Arc::clone(&function.get().field)),
+        };
+        Ok((name.clone(), value))
+    };
+    let values = values.iter().map(value).collect::<PyResult<Vec<_>>>()?;
     let asked = Asked { settings, lengths };
     let within = |bounds: &Bounds| asked.within(bounds);
     while session.fit(&within, false, SLICES).is_none() {
@@ -122,14 +120,18 @@ fn run(
         tell(now.fraction)?;
     }
     session.run.check_field().map_err(raised)?;
-    let record = session.record(None).map(|made| serde_json::to_string(&made).expect("a record is data"));
+    let record = session.record(None);
     let surface = session.run.field().clone();
     let mut sample = session.finish(measured, |fraction| Ok::<(), Ended>(tell(fraction)?))?;
     for (name, value) in values {
-        sample.add_value(&*surface, name, value).map_err(|error| errors::of_value(&error))?;
+        sample.add_value(&*surface, &name, &value).map_err(|error| errors::of_value(&error))?;
     }
     tell(1.0)?;
-    Ok(Sample(sample.recorded(record.map_or_else(RecordText::default, |json| RecordText::new(&json)))))
+    let record = record.map_or_else(RecordText::default, |made| {
+        let made = FileRecord { values: ValueText::of(sample.values()), ..made };
+        RecordText::new(&serde_json::to_string(&made).expect("a record is data"))
+    });
+    Ok(Sample(sample.recorded(record)))
 }
 
 /// The exception that ended a measurement.

@@ -30,7 +30,7 @@ pub(crate) fn print(
         settings.bounds = Some(found);
     }
     session.start(&settings)?;
-    let code = session.code(language).map_err(Failure::Usage)?;
+    let code = session.code(language, &arguments.values).map_err(Failure::Usage)?;
     std::io::stdout().write_all(code.text.as_bytes())?;
     Ok(ExitCode::SUCCESS)
 }

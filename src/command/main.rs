@@ -10,6 +10,7 @@ mod outcome;
 mod output;
 mod points;
 mod porosity;
+mod reading;
 mod remesh;
 mod sample;
 mod spacing;
@@ -20,6 +21,7 @@ mod sweep;
 mod wall;
 
 use arguments::{Arguments, Command};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use failure::Failure;
@@ -29,7 +31,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let Arguments { command, threads } = Arguments::parse();
+    let Arguments { command, threads } = Arguments::try_parse().unwrap_or_else(|error| refused(&error));
     let result = start_threads(threads).and_then(|()| match command {
         Command::Sample(arguments) => sample::run(*arguments),
         Command::Surfaces(arguments) => surfaces::run(&arguments),
@@ -44,6 +46,18 @@ fn main() -> ExitCode {
             failure.code()
         }
     }
+}
+
+/// Ends the program with what is wrong with its arguments.
+fn refused(error: &clap::Error) -> ! {
+    if error.kind() == ErrorKind::InvalidSubcommand
+        && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand)
+        && error.get(ContextKind::SuggestedSubcommand).is_none()
+    {
+        eprintln!("error: there is no command `{word}`; a surface follows a command: sample \"{word}\"");
+        std::process::exit(error.exit_code());
+    }
+    error.exit()
 }
 
 /// Starts the threads that share the work, including this one: one per processor by default.

@@ -15,7 +15,7 @@ use marching_particles::export::{MeshFile, ParticleFile, Placement, RecordText, 
 use marching_particles::math::grouped;
 use marching_particles::run::{Reach, Value};
 use marching_particles::sampler::{COUNT_ROOM, Phase, SizeMode};
-use marching_particles::session::{Fault, FileRecord, Session, Source};
+use marching_particles::session::{Fault, FileRecord, Session, Source, ValueText};
 use marching_particles::{Bounds, Error, Format, MeshFormat, Run, Settings, StopReason};
 use std::borrow::Cow;
 use std::io::Write;
@@ -179,6 +179,9 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
             .add_value(&*field, name, &value)
             .map_err(|error| Failure::Usage(format!("--value: {error}")))?;
     }
+    if let Some(made) = &mut made {
+        made.values = ValueText::of(sample.values());
+    }
     let bodies = if is_joined { sample.mesh().bodies(sample.particles()) } else { Vec::new() };
     let placement = arguments.placement(arguments.bodies().size(&bodies).max_element());
     let mesh = is_joined.then(|| MeshCounts::new(&sample, &bodies, arguments.bodies(), placement));
@@ -263,14 +266,14 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
 }
 
 /// The values of the requested columns; their formulas may use the surface's parameters.
-fn values<'a>(given: &'a [(String, String)], session: &Session) -> Result<Vec<(&'a str, Value)>, Failure> {
+fn values<'a>(given: &'a [ValueText], session: &Session) -> Result<Vec<(&'a str, Value)>, Failure> {
     let parameters = session.answer().parameters;
-    let value = |(name, text): &'a (String, String)| match Value::of_formula(text, &parameters) {
+    let value = |ValueText { name, formula }: &'a ValueText| match Value::of_formula(formula, &parameters) {
         Ok(value) => Ok((name.as_str(), value)),
         Err(error) => {
-            let fault = Fault::in_formula(error, text);
+            let fault = Fault::in_formula(error, formula);
             let message = format!("--value {name}: {}", fault.message);
-            Err(Failure::Formula { text: text.clone(), fault: Box::new(Fault { message, ..fault }) })
+            Err(Failure::Formula { text: formula.clone(), fault: Box::new(Fault { message, ..fault }) })
         }
     };
     given.iter().map(value).collect()

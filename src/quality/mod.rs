@@ -123,6 +123,8 @@ pub struct Measurements {
 pub struct NamedValues {
     /// The name: a letter, then letters, digits and _.
     pub name: String,
+    /// The formula that gave them, if it was one.
+    pub formula: Option<String>,
     /// A number for each row; NaN if undefined.
     pub values: Vec<f32>,
 }

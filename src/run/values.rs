@@ -156,6 +156,15 @@ impl Value {
         self.takes(&[AREA])
     }
 
+    /// The column of this value.
+    fn named(&self, name: &str, values: Vec<f32>) -> NamedValues {
+        let formula = match &self.0 {
+            Source::Formula(formula) => Some(formula.text().to_owned()),
+            Source::Function(_) => None,
+        };
+        NamedValues { name: name.to_owned(), formula, values }
+    }
+
     /// Whether the formula uses one of these quantities.
     fn takes(&self, names: &[&str]) -> bool {
         match &self.0 {
@@ -183,7 +192,7 @@ impl Sample {
         check_name(name, self.values().iter())?;
         let mesh = value.needs_mesh().then(|| self.mesh());
         let values = column(value, self.particles(), &field.into_field(), self.bounds().diagonal(), mesh)?;
-        self.measured_mut().values.push(NamedValues { name: name.to_owned(), values });
+        self.measured_mut().values.push(value.named(name, values));
         Ok(())
     }
 
@@ -205,7 +214,7 @@ impl<'f, F: Field + 'f> Run<'f, F> {
         let values = column(value, self.particles(), self.field(), self.bounds().diagonal(), self.mesh())?;
         let all = &mut self.measured_mut().values;
         all.retain(is_other);
-        all.push(NamedValues { name: name.to_owned(), values });
+        all.push(value.named(name, values));
         Ok(())
     }
 }

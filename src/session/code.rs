@@ -3,13 +3,14 @@
 //! from the defaults.
 
 use super::setting::{Setting, SettingGroup, SettingValue, with_values};
-use super::{BoxCell, BoxFaces, BoxMode, FileRecord, Session, SpacingText};
+use super::{BoxCell, BoxFaces, BoxMode, FileRecord, Session, SpacingText, ValueText};
 use crate::field::formula::Thickness;
 use crate::field::gallery;
 use crate::math::{Bounds, grouped, shortest_text};
 use crate::sampler::{Method, Radius, Sampling, Settings, SizeMode};
 use core::fmt::Write as _;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A language in which a program can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,12 +66,12 @@ const LAST_SAFE: u64 = (1 << 53) - 1;
 
 impl Session {
     /// The program that makes the particles of the last run again, if the run is on a formula: all
-    /// of them, even if the run was stopped.
+    /// of them, even if the run was stopped; and these values at them.
     ///
     /// # Errors
     ///
     /// Why there is no such program, in a sentence.
-    pub fn code(&self, language: Language) -> Result<Code, String> {
+    pub fn code(&self, language: Language, values: &[ValueText]) -> Result<Code, String> {
         let (Some(record), Some(settings)) = (&self.made, self.started) else {
             let why =
                 "these particles are of no run on a formula, or have followed a moving surface: sample again";
@@ -84,7 +85,7 @@ impl Session {
         if let (Method::Front, Some(progress)) = (settings.method, self.run.progress()) {
             settings.relax_steps = settings.relax_steps.max(progress.relax_step);
         }
-        let program = Program { record, settings, is_box_found: self.is_box_found };
+        let program = Program { record, values, settings, is_box_found: self.is_box_found };
         let text = match language {
             Language::Rust => program.rust(),
             Language::JavaScript => program.javascript()?,
@@ -98,6 +99,7 @@ impl Session {
 /// A run to write programs for.
 struct Program<'a> {
     record: &'a FileRecord,
+    values: &'a [ValueText],
     /// The settings of the run; a box in them is always written.
     settings: Settings,
     /// Whether the search for a box finds the one of the run.
@@ -244,7 +246,11 @@ impl Program<'_> {
         }
         imports.sort_unstable();
         imports.dedup();
-        let mut text = format!("use marching_particles::{{{}}};\n\n", imports.join(", "));
+        let mut text = String::new();
+        if !self.values.is_empty() {
+            text.push_str("use marching_particles::run::Value;\n");
+        }
+        let _ = writeln!(text, "use marching_particles::{{{}}};\n", imports.join(", "));
         text.push_str("fn main() -> Result<(), Box<dyn std::error::Error>> {\n");
         push_chain(&mut text, "let surface = ", &surface, ";");
         if assigned.is_empty() {
@@ -253,16 +259,30 @@ impl Program<'_> {
             push_chain(&mut text, "let mut settings = ", &made, ";");
             assigned.iter().for_each(|line| push_line(&mut text, line));
         }
+        // The surface gives the curvatures of values.
+        let (particles, sampled) = if self.values.is_empty() {
+            ("let particles", "surface")
+        } else {
+            ("let mut particles", "&surface")
+        };
         match &record.spacing {
-            None => push_line(&mut text, "let particles = sample(surface, &settings)?;"),
+            None => push_line(&mut text, &format!("{particles} = sample({sampled}, &settings)?;")),
             Some(written @ SpacingText { smallest, largest, .. }) => {
-                let formula = written.alone(&record.parameters);
+                let formula = alone(&written.formula, &record.parameters);
                 let mut spacing = vec![format!("Spacing::parse({formula:?})?")];
                 spacing.extend(smallest.map(|length| format!(".at_least({length:?})")));
                 spacing.extend(largest.map(|length| format!(".at_most({length:?})")));
                 push_chain(&mut text, "let spacing = ", &spacing, ";");
-                push_line(&mut text, "let particles = sample(surface, &settings.spaced(spacing))?;");
+                push_line(
+                    &mut text,
+                    &format!("{particles} = sample({sampled}, &settings.spaced(spacing))?;"),
+                );
             }
+        }
+        for ValueText { name, formula } in self.values {
+            let formula = alone(formula, &record.parameters);
+            let value = format!("&Value::parse({formula:?})?");
+            push_line(&mut text, &format!("particles.add_value(&surface, {name:?}, {value})?;"));
         }
         push_line(&mut text, "println!(\"{} particles\", particles.report().count);");
         push_line(&mut text, "Ok(())");
@@ -283,11 +303,7 @@ impl Program<'_> {
                 let key = if is_plain && !is_python { name.clone() } else { quoted(name, quote) };
                 format!("{key}: {}", shortest_text(*value))
             });
-            let entries = entries.collect::<Vec<_>>().join(", ");
-            given.push((
-                "params",
-                if is_python { format!("{{{entries}}}") } else { format!("{{ {entries} }}") },
-            ));
+            given.push(("params", braced(&entries.collect::<Vec<_>>(), is_python)));
         }
         if settings.size_mode == SizeMode::Count {
             given.push(("count", settings.count.to_string()));
@@ -346,6 +362,13 @@ impl Program<'_> {
                 SettingValue::Choice(word) => quoted(word, quote),
             };
             given.push((setting.argument(), value));
+        }
+        if !self.values.is_empty() {
+            let entries = self.values.iter().map(|ValueText { name, formula }| {
+                let key = if is_python { quoted(name, quote) } else { name.clone() };
+                format!("{key}: {}", quoted(formula, quote))
+            });
+            given.push(("values", braced(&entries.collect::<Vec<_>>(), is_python)));
         }
         let given = given
             .into_iter()
@@ -446,8 +469,25 @@ impl Program<'_> {
             };
             words.push(format!("--{} {value}", setting.option()));
         }
+        let values = self.values.iter().map(|ValueText { name, formula }| format!("{name}={formula}"));
+        words.extend(values.map(|value| format!("--value {}", in_shell(&value))));
         Ok(format!("{}\n", words.join(" ")))
     }
+}
+
+/// The entries of a dictionary of Python or an object of JavaScript.
+fn braced(entries: &[String], is_python: bool) -> String {
+    let entries = entries.join(", ");
+    if is_python { format!("{{{entries}}}") } else { format!("{{ {entries} }}") }
+}
+
+/// A formula with the values of these parameters of the surface, usable on its own.
+fn alone(formula: &str, parameters: &BTreeMap<String, f64>) -> String {
+    let used = parameters.iter().filter(|(name, _)| formula.contains(name.as_str()));
+    let mut text: String =
+        used.map(|(name, value)| format!("{name} = {}; ", shortest_text(*value))).collect();
+    text.push_str(formula);
+    text
 }
 
 /// A name in the camel case of JavaScript.

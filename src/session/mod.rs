@@ -25,7 +25,7 @@ pub use mesh::OpenedMesh;
 pub use mesh::{MeshBorder, MeshInfo, MeshPart, MeshScan};
 #[cfg(feature = "images")]
 pub use opened::OpenedSource;
-pub use record::{FileRecord, FileRequest};
+pub use record::{FileRecord, FileRequest, ValueText};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
     without_effect,

@@ -7,6 +7,7 @@ use crate::export::{
 };
 use crate::field::rbf::Pull;
 use crate::math::Bounds;
+use crate::quality::NamedValues;
 use crate::sampler::{Method, Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -50,9 +51,32 @@ pub struct FileRecord {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, ts(optional))]
     pub spacing: Option<SpacingText>,
+    /// Columns that formulas added.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(test, ts(as = "Option<Vec<ValueText>>", optional))]
+    pub values: Vec<ValueText>,
     /// Settings of the run.
     #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
     pub settings: Settings,
+}
+
+/// A column of numbers at the particles, by a formula that may use the parameters of the surface.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct ValueText {
+    /// Name of the column.
+    pub name: String,
+    /// Text of the formula.
+    pub formula: String,
+}
+
+impl ValueText {
+    /// The columns that formulas gave; a record cannot hold functions.
+    pub fn of(added: &[NamedValues]) -> Vec<Self> {
+        let text =
+            |own: &NamedValues| own.formula.clone().map(|formula| Self { name: own.name.clone(), formula });
+        added.iter().filter_map(text).collect()
+    }
 }
 
 /// Request for a mesh file.
@@ -80,6 +104,7 @@ impl Session {
         let mut record = self.made.clone()?;
         record.digest = format!("{:016x}", self.run.particles().digest());
         record.link = link;
+        record.values = ValueText::of(&self.run.measured().values);
         // Steps made after the run count as its own: ten and one are eleven.
         if let (Method::Front, Some(progress)) = (record.settings.method, self.run.progress()) {
             record.settings.relax_steps = progress.relax_step;
@@ -122,6 +147,7 @@ impl Session {
             faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
             solid: self.fitting.choice.clone(),
             spacing: self.spacing.clone().filter(|_| self.next_spacing().is_some()),
+            values: Vec::new(),
             settings: Settings { bounds: None, ..*settings },
         })
     }

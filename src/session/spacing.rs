@@ -2,11 +2,9 @@
 
 use super::{Fault, FaultKind, Session, Source};
 use crate::field::formula::{FormulaError, Parameter};
-use crate::math::shortest_text;
 use crate::run::{Value, ValueError};
 use crate::sampler::Spacing;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// A spacing by a formula, as text: see [`Spacing`]. A record stores it next to the settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -29,15 +27,6 @@ impl SpacingText {
     /// Whether there is a smallest or a largest distance.
     pub(super) fn is_limited(&self) -> bool {
         self.smallest.or(self.largest).is_some()
-    }
-
-    /// The formula with the values of these parameters, usable on its own.
-    pub(super) fn alone(&self, parameters: &BTreeMap<String, f64>) -> String {
-        let used = parameters.iter().filter(|(name, _)| self.formula.contains(name.as_str()));
-        let mut text: String =
-            used.map(|(name, value)| format!("{name} = {}; ", shortest_text(*value))).collect();
-        text.push_str(&self.formula);
-        text
     }
 
     /// The spacing, with these parameters of the formula whose surface is sampled.

@@ -415,34 +415,33 @@ def _run(
     return _core.sample(
         core_field,
         options,
-        spacing=None if spacing is None else _spacing(spacing, core_field, params),
+        spacing=None if spacing is None else _function("spacing", spacing, core_field, params),
         bounds=bounds,
-        values=_columns(values, params),
+        values=_columns(values, core_field, params),
         measure=measure,
         progress=progress,
     )
 
 
-def _spacing(spacing, core_field, params):
-    # A spacing formula has the parameters of the sampled one.
-    if isinstance(spacing, str) and core_field.is_formula:
-        return spacing
-    return _function("spacing", spacing, params)
-
-
-def _function(name, function, params):
+def _function(name, function, core_field, params):
     """A function of place, as the core takes it: a formula, with the values of its parameters, or
     the core's field of a function."""
     if isinstance(function, str):
+        # It has the parameters of the sampled formula.
+        if core_field.is_formula:
+            return function
         given = _parameters(params) if params is not None else []
         used = [f"{own} = {value!r}; " for own, value in given if own in function]
         return "".join(used) + function
     return field_of(function, name=name)
 
 
-def _columns(values, params):
+def _columns(values, core_field, params):
     if values is None:
         return []
     if not isinstance(values, Mapping):
         raise TypeError(f"values must be a dict of names and formulas or functions, and not {values!r}")
-    return [(name, _function(f"values[{name!r}]", value, params)) for name, value in values.items()]
+    return [
+        (name, _function(f"values[{name!r}]", value, core_field, params))
+        for name, value in values.items()
+    ]

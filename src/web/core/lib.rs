@@ -15,7 +15,7 @@ use marching_particles::run::Value;
 use marching_particles::sampler::Sampling;
 use marching_particles::session::{
     Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, ImageFacts, ImagePromise, Language,
-    Lengths, OpenedMesh, Session, SolidSettings, SpacingText, describe,
+    Lengths, OpenedMesh, Session, SolidSettings, SpacingText, ValueText, describe,
 };
 use marching_particles::slices::Estimated;
 use marching_particles::{Image, Spacing, TriangleMesh};
@@ -703,8 +703,9 @@ impl Core {
     /// `shell`): an `Answer` with `Code`.
     #[wasm_bindgen(unchecked_return_type = "Answer<Code, string>")]
     pub fn code(&self, language: &str) -> JsValue {
+        let values = ValueText::of(&self.session.run.measured().values);
         let language = Language::named(language).ok_or_else(|| format!("there is no language `{language}`"));
-        answer(language.and_then(|language| self.session.code(language)))
+        answer(language.and_then(|language| self.session.code(language, &values)))
     }
 
     /// Digest of the particle columns, 16 hexadecimal digits.

@@ -349,6 +349,8 @@ export type FileRecord = {
   solid: Record<string, number | string>,
   /** Spacing of the run, if it is by a formula. */
   spacing?: SpacingText,
+  /** Columns that formulas added. */
+  values?: Array<ValueText>,
   /** Settings of the run. */
   settings: Record<string, number | string>,
 };
@@ -1523,6 +1525,14 @@ export type Unsampled = {
 
 /** Axis of the formula's coordinates. */
 export type UpAxis = "x" | "y" | "z";
+
+/** A column of numbers at the particles, by a formula that may use the parameters of the surface. */
+export type ValueText = {
+  /** Name of the column. */
+  name: string,
+  /** Text of the formula. */
+  formula: string,
+};
 
 /** How particles become vertices of a mesh file. The choices differ on sharp edges, where a
 * particle has a normal for each side. */

@@ -130,6 +130,15 @@ fn a_printed_program_in_rust_makes_the_same_particles() {
             settings.radius = Some(Radius::Share(0.03));
             let particles = sample(surface, &settings)?;
         },
+        lines! { particles:
+            use marching_particles::run::Value;
+            use marching_particles::{Formula, Settings, sample};
+            let surface = Formula::parse("(hypot(x, y) - 1)^2 + z^2 = r^2")?.with("r", 0.4)?;
+            let settings = Settings::with_count(500);
+            let mut particles = sample(&surface, &settings)?;
+            particles.add_value(&surface, "H", &Value::parse("(k_1+k_2)/2")?)?;
+            particles.add_value(&surface, "share", &Value::parse("r = 0.4; z/r")?)?;
+        },
     ];
     let cases: Vec<Case> = golden::read("code.json");
     let without_space = |text: &str| text.split_whitespace().collect::<String>();

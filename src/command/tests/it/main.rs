@@ -1,6 +1,5 @@
-//! Tests of the command-line tool, which run the binary. They are one binary themselves: `cargo
-//! test
-//! --test cli sweeps::` runs one module.
+//! Tests of the command-line tool, which run the binary. They are one binary themselves:
+//! `cargo test --test cli sweeps::` runs one module.
 
 mod cli;
 mod code;
@@ -13,3 +12,4 @@ mod spacing;
 mod sweeps;
 mod thickness;
 mod threads;
+mod values;
