@@ -1,9 +1,10 @@
 //! The fields that can be sampled: a formula, functions of Python, or a surface through points.
 
 use crate::errors;
-use marching_particles::field::{BatchField, BatchPiecewise, Combined};
+use marching_particles::export::COLOURS;
+use marching_particles::field::{BatchField, BatchPiecewise, Combined, IntoField};
 use marching_particles::glam::DVec3;
-use marching_particles::image::{ImageChoice, ImageError, VoxelType};
+use marching_particles::image::{AxisOrder, ImageChoice, ImageError, VoxelType};
 use marching_particles::pointcloud::job::Job;
 use marching_particles::remesh::{MeshEdges, MeshError, MeshField, MeshKind, MeshOptions};
 use marching_particles::session::{FieldRequest, Session};
@@ -103,16 +104,17 @@ impl Field {
     }
 
     /// The field of a surface in an image, with its facts as JSON. The bytes are voxels of this
-    /// type, the index along the first axis changing fastest; `rows` is the affine map from indices
-    /// to points.
+    /// type, the index along the last axis changing fastest in C order, else along the first;
+    /// `rows` is the affine map from indices to points.
     #[staticmethod]
-    #[pyo3(signature = (voxels, voxel_type, size, rows, iso, label, smooth, is_dark_inside, is_closed))]
+    #[pyo3(signature = (voxels, voxel_type, size, is_c_order, rows, iso, label, smooth, is_dark_inside, is_closed))]
     #[allow(clippy::too_many_arguments, reason = "they are the keywords of the package's function")]
     fn image(
         py: Python<'_>,
         voxels: PyReadonlyArray1<'_, u8>,
         voxel_type: &str,
         size: [usize; 3],
+        is_c_order: bool,
         rows: [[f64; 4]; 3],
         iso: Option<f64>,
         label: Option<f64>,
@@ -122,9 +124,10 @@ impl Field {
     ) -> PyResult<(Self, String)> {
         let voxel_type = VoxelType::named(voxel_type);
         let voxel_type = voxel_type.expect("the package converts what has no type here");
+        let order = if is_c_order { AxisOrder::LastFastest } else { AxisOrder::FirstFastest };
         let voxels = voxels.as_slice()?.to_vec();
         py.detach(|| {
-            let image = Image::from_bytes(size, voxel_type, voxels)
+            let image = Image::from_bytes(size, order, voxel_type, voxels)
                 .and_then(|image| image.with_affine(rows))
                 .map_err(|error| PyValueError::new_err(error.to_string()))?;
             Self::imaged(&image, &ImageChoice { iso, label, smooth, is_dark_inside, is_closed })
@@ -154,13 +157,18 @@ impl Field {
         })
     }
 
-    /// The field of a triangle mesh. `edges` tells which edges stay sharp: "auto", "none" or an
-    /// angle in degrees.
+    /// The field of a triangle mesh, with a colour for each vertex or none. `edges` tells which
+    /// edges stay sharp, "auto", "none" or an angle in degrees, and so do the segments, of six
+    /// numbers each.
     #[staticmethod]
+    #[pyo3(signature = (vertices, faces, colours, segments, edges, borders, smooth))]
+    #[allow(clippy::too_many_arguments, reason = "they are the keywords of the package's function")]
     fn mesh(
         py: Python<'_>,
         vertices: PyReadonlyArray2<'_, f64>,
         faces: PyReadonlyArray2<'_, u32>,
+        colours: Option<PyReadonlyArray2<'_, f32>>,
+        segments: PyReadonlyArray2<'_, f64>,
         edges: &str,
         borders: Option<bool>,
         smooth: Option<f64>,
@@ -168,7 +176,15 @@ impl Field {
         let vertices: Vec<DVec3> =
             vertices.as_slice()?.as_chunks::<3>().0.iter().map(|&p| DVec3::from_array(p)).collect();
         let faces = faces.as_slice()?.as_chunks::<3>().0.to_vec();
-        py.detach(|| Self::meshed(TriangleMesh::new(vertices, faces), edges, borders, smooth))
+        let colours = colours.map(|colours| Ok::<_, PyErr>(colours.as_slice()?.as_chunks::<3>().0.to_vec()));
+        let (colours, segments) = (colours.transpose()?, segments_of(&segments)?);
+        py.detach(|| {
+            let mesh = TriangleMesh::new(vertices, faces).and_then(|mesh| match colours {
+                Some(colours) => mesh.with_colours(colours),
+                None => Ok(mesh),
+            });
+            Self::meshed(mesh, &segments, edges, borders, smooth)
+        })
     }
 
     /// [`Self::mesh`] for the content of a file of this name.
@@ -177,11 +193,13 @@ impl Field {
         py: Python<'_>,
         name: &str,
         content: Vec<u8>,
+        segments: PyReadonlyArray2<'_, f64>,
         edges: &str,
         borders: Option<bool>,
         smooth: Option<f64>,
     ) -> PyResult<(Self, Mesh, String)> {
-        py.detach(|| Self::meshed(TriangleMesh::read(name, content), edges, borders, smooth))
+        let segments = segments_of(&segments)?;
+        py.detach(|| Self::meshed(TriangleMesh::read(name, content), &segments, edges, borders, smooth))
     }
 
     /// The union, in a box around the boxes of both fields if they are known.
@@ -246,6 +264,18 @@ impl Mesh {
         let change = py.detach(|| self.0.compare(&points, &faces));
         Ok(serde_json::to_string(&change).expect("numbers are data"))
     }
+
+    /// The parts of its colour as functions of place, by their names; empty if it has none.
+    fn colours(&self) -> Vec<(&'static str, Field)> {
+        let solid = self.0.solid();
+        let channels = if solid.has_colours() { COLOURS.as_slice() } else { &[] };
+        let part = |(channel, &name): (usize, &&'static str)| {
+            let solid = solid.clone();
+            let part = move |p: DVec3| solid.colour_at(p).map_or(f64::NAN, |colour| colour[channel].into());
+            (name, Field::new(Arc::new(part.into_field()), None))
+        };
+        channels.iter().enumerate().map(part).collect()
+    }
 }
 
 impl Field {
@@ -264,6 +294,7 @@ impl Field {
 
     fn meshed(
         mesh: Result<TriangleMesh, MeshError>,
+        segments: &[[DVec3; 2]],
         edges: &str,
         borders: Option<bool>,
         smooth: Option<f64>,
@@ -275,7 +306,7 @@ impl Field {
             "none" => MeshEdges::Rounded,
             angle => MeshEdges::Angle(angle.parse().unwrap_or(f64::NAN)),
         };
-        let solid = mesh.solid().map_err(raised)?;
+        let solid = mesh.solid().map_err(raised)?.with_edges_along(segments);
         let mut options = MeshOptions::with_edges(edges);
         (options.borders, options.smooth) = (borders, smooth);
         let field = solid.field(&options).map_err(raised)?;
@@ -347,6 +378,12 @@ impl Field {
     fn joined(&self, other: &Self) -> Option<Bounds> {
         self.known().zip(other.known()).map(|(own, other)| own.joined(&other))
     }
+}
+
+/// Segments from rows of six numbers.
+fn segments_of(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[DVec3; 2]>> {
+    let ends = rows.as_slice()?.as_chunks::<6>().0.iter();
+    Ok(ends.map(|&[a, b, c, d, e, f]| [DVec3::new(a, b, c), DVec3::new(d, e, f)]).collect())
 }
 
 /// Calls a Python function with points. It may keep their array, which is a copy.

@@ -37,6 +37,18 @@ def test_affine_places_the_image():
     assert np.abs(distances(mp.sample(spaced, count=500), [8.1, 8.55, 9.2]) - 4.5).max() < 0.03
 
 
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_spacings_are_along_the_axes_of_the_array(order):
+    i, j, k = np.indices((30, 24, 9))
+    voxels = 8 - np.sqrt((i - 14.2) ** 2 + (j - 11.3) ** 2 + (3 * (k - 4.1)) ** 2)
+    voxels = np.asarray(voxels, order=order)
+    image = mp.Image(voxels, spacing=(1, 1, 3), iso=0, smooth=0)
+    assert np.abs(distances(mp.sample(image, count=500), (14.2, 11.3, 12.3)) - 8).max() < 0.2
+    voxels[3, 2, 1] = np.nan
+    with pytest.raises(ValueError, match=r"\(3, 2, 1\)"):
+        mp.Image(voxels, spacing=(1, 1, 3))
+
+
 def test_a_surface_that_the_border_cuts_can_be_closed():
     rod = 7 - np.linalg.norm(np.indices((30, 28, 16))[:2] - np.reshape((14.2, 13.1), (2, 1, 1, 1)), axis=0)
     opened = mp.sample(mp.Image(rod, iso=0, smooth=0), count=800)

@@ -1,5 +1,7 @@
 """Triangle meshes, sampled anew."""
 
+import pickle
+
 import marching_particles as mp
 import numpy as np
 import pytest
@@ -88,3 +90,27 @@ def test_what_cannot_be_sampled_is_refused():
         mp.remesh(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]]), count=500)
     with pytest.raises(TypeError, match="a mesh of trimesh or PyVista"):
         mp.remesh(7, count=500)
+
+
+def test_colours_of_the_old_mesh_are_values_at_the_new_particles():
+    box = trimesh.creation.box((1, 1, 1))
+    box.visual.vertex_colors = np.rint(255 * (box.vertices + 0.5)).astype(np.uint8)
+    sample = mp.remesh(box, count=500, values={"height": "z"})
+    colour = np.column_stack([sample.values[name] for name in ("red", "green", "blue")])
+    assert np.abs(colour - (sample.points + 0.5)).max() < 1e-5
+    assert np.allclose(sample.values["height"], sample.points[:, 2])
+    again = pickle.loads(pickle.dumps(sample))
+    assert np.array_equal(again.values["red"], sample.values["red"])
+    assert not mp.remesh((box.vertices, box.faces), count=500).values
+
+
+def test_edges_along_lines_are_kept():
+    prism = trimesh.creation.cylinder(radius=1, height=2, sections=24)
+    angles = np.arctan2(prism.vertices[:, 1], prism.vertices[:, 0])
+    is_on = [(np.abs(angles - angle) < 0.01) & (np.hypot(*prism.vertices.T[:2]) > 0.9) for angle in (0, np.pi / 2)]
+    lines = [prism.vertices[own] for own in is_on]
+    assert all(line.shape == (2, 3) for line in lines)
+    plain, marked = (mp.remesh(prism, count=1500, lines=given) for given in ((), lines))
+    assert (plain.report["creases"], marked.report["creases"]) == (2, 6)
+    with pytest.raises(ValueError, match="lines"):
+        mp.remesh(prism, lines=[[1, 2, 3]])

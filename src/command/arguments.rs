@@ -3,10 +3,10 @@
 use crate::image::{VoxelSize, raw, voxel_size};
 use crate::options::{SamplingOptions, number};
 use crate::reading::{
-    beyond_points, centres, choice_of_box, file_formats, frames, length, mesh_edges, one_of, parameter,
-    porosity, scale, sweep, thickness, value, vertices,
+    beyond_points, centres, choice_of_box, file_formats, frames, length, one_of, parameter, porosity, scale,
+    sweep, thickness, value, vertices,
 };
-use crate::remesh::MeshBorders;
+use crate::remesh::MeshArguments;
 use crate::spacing::{SpacingOption, spacing, units};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -16,7 +16,6 @@ use marching_particles::field::model;
 use marching_particles::field::rbf::Pull;
 use marching_particles::image::RawVoxels;
 use marching_particles::math::Bounds;
-use marching_particles::remesh::MeshEdges;
 use marching_particles::run::Measured;
 use marching_particles::session::{
     BeyondPoints, BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings, ValueText,
@@ -392,31 +391,8 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "XxYxZ", value_parser = voxel_size, requires = "image", help_heading = "Surface")]
     pub(crate) voxel_size: Option<VoxelSize>,
 
-    /// File of a triangle mesh to sample anew: STL, OBJ, PLY, OFF, GLB or 3MF; `-` is standard
-    /// input. Sharp edges are kept, holes of solids are closed, open surfaces end at their border,
-    /// and the report says how far the new mesh is from the old one. With --formula the mesh is an
-    /// operand named `model`
-    #[arg(
-        long, value_name = "FILE", help_heading = "Surface",
-        conflicts_with_all = ["surface", "points", "image", "closed", "thickness"]
-    )]
-    pub(crate) mesh_in: Option<PathBuf>,
-
-    /// Keep an edge of --mesh-in sharp if the normals of its faces differ by at least this angle,
-    /// in degrees; `none` rounds all edges; `auto` is 30, but `none` for scans, smooth shapes and
-    /// meshes with holes [default: auto]
-    #[arg(long, value_name = "DEGREES|auto|none", value_parser = mesh_edges, requires = "mesh_in", help_heading = "Surface")]
-    pub(crate) mesh_edges: Option<MeshEdges>,
-
-    /// Whether the new surface of --mesh-in ends at the borders of the mesh, or its holes are
-    /// closed [default: keep for open surfaces, such as a leaf or a terrain, else close]
-    #[arg(long, value_name = "WORD", value_enum, requires = "mesh_in", help_heading = "Surface")]
-    pub(crate) mesh_borders: Option<MeshBorders>,
-
-    /// Take --mesh-in for a scan, and smooth it by a Gaussian filter of this width, in cells of the
-    /// grid of distances, 0 to 10 [default: by the measured noise, 0.7 to 3]
-    #[arg(long, value_name = "CELLS", value_parser = number, requires = "mesh_in", help_heading = "Surface")]
-    pub(crate) mesh_smooth: Option<f64>,
+    #[command(flatten)]
+    pub(crate) mesh: MeshArguments,
 
     /// Number of points, 100 to 800, that are centres of the fit to --points or to a model: more
     /// reproduce finer details and take longer [default: 200]
@@ -521,7 +497,7 @@ impl SampleArguments {
             && surface.formula.is_none()
             && surface.points.is_none()
             && surface.image.is_none()
-            && surface.mesh_in.is_none()
+            && surface.mesh.mesh_in.is_none()
         {
             let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
             if surface.bounds.is_none() && own != Some(record.bounds) {

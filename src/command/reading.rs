@@ -7,7 +7,6 @@ use marching_particles::export::{Unit, VERTICES, Vertices};
 use marching_particles::field::formula::Thickness;
 use marching_particles::math::{Bounds, BoxError, shortest_text};
 use marching_particles::pointcloud::CENTRES;
-use marching_particles::remesh::MeshEdges;
 use marching_particles::session::{BeyondPoints, SolidSettings, ValueText};
 use marching_particles::{Format, MeshFormat};
 
@@ -35,15 +34,6 @@ pub(crate) fn vertices() -> impl TypedValueParser<Value = Vertices> {
         let found = VERTICES.iter().find(|choice| choice.value.name() == given);
         found.map(|choice| choice.value).ok_or("there is no such way")
     })
-}
-
-/// Which edges of a mesh stay sharp.
-pub(crate) fn mesh_edges(text: &str) -> Result<MeshEdges, String> {
-    match text {
-        "auto" => Ok(MeshEdges::Auto),
-        "none" => Ok(MeshEdges::Rounded),
-        _ => Ok(MeshEdges::Angle(number(text)?)),
-    }
 }
 
 /// Where the surface of points ends.

@@ -2,15 +2,17 @@
 
 use crate::arguments::SurfaceArguments;
 use crate::failure::Failure;
+use crate::options::number;
 use crate::output::STANDARD;
 use marching_particles::export::Vertices;
+use marching_particles::glam::DVec3;
 use marching_particles::math::{counted, grouped, significant};
-use marching_particles::remesh::{MeshChange, MeshField, MeshOptions};
+use marching_particles::remesh::{MeshChange, MeshEdges, MeshField, MeshOptions};
 use marching_particles::session::{MeshInfo, MeshPart, MeshScan};
 use marching_particles::{Sample, TriangleMesh};
 use serde::Serialize;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What becomes of the borders of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -19,6 +21,70 @@ pub(crate) enum MeshBorders {
     Keep,
     /// Holes are closed smoothly
     Close,
+}
+
+/// A line along which edges stay sharp: its segments.
+#[derive(Clone, Debug)]
+pub(crate) struct Line(Vec<[DVec3; 2]>);
+
+/// The options for a triangle mesh.
+#[derive(Debug, clap::Args)]
+pub(crate) struct MeshArguments {
+    /// File of a triangle mesh to sample anew: STL, OBJ, PLY, OFF, GLB or 3MF; `-` is standard
+    /// input. Sharp edges are kept, holes of solids are closed, open surfaces end at their border,
+    /// and the report says how far the new mesh is from the old one. With --formula the mesh is an
+    /// operand named `model`
+    #[arg(
+        long, value_name = "FILE", help_heading = "Surface",
+        conflicts_with_all = ["surface", "points", "image", "closed", "thickness"]
+    )]
+    pub(crate) mesh_in: Option<PathBuf>,
+
+    /// Keep an edge of --mesh-in sharp if the normals of its faces differ by at least this angle,
+    /// in degrees; `none` rounds all edges; `auto` is 30, but `none` for scans, smooth shapes and
+    /// meshes with holes [default: auto]
+    #[arg(long, value_name = "DEGREES|auto|none", value_parser = mesh_edges, requires = "mesh_in", help_heading = "Surface")]
+    pub(crate) mesh_edges: Option<MeshEdges>,
+
+    /// Keep the edges of --mesh-in along this line sharp, whatever their angle: its points, such as
+    /// `0,0,0 1,0,0 1,1,0`. Repeat it for each line
+    #[arg(
+        long = "mesh-line", value_name = "POINTS", value_parser = line, allow_hyphen_values = true,
+        requires = "mesh_in", help_heading = "Surface"
+    )]
+    pub(crate) mesh_lines: Vec<Line>,
+
+    /// Whether the new surface of --mesh-in ends at the borders of the mesh, or its holes are
+    /// closed [default: keep for open surfaces, such as a leaf or a terrain, else close]
+    #[arg(long, value_name = "WORD", value_enum, requires = "mesh_in", help_heading = "Surface")]
+    pub(crate) mesh_borders: Option<MeshBorders>,
+
+    /// Take --mesh-in for a scan, and smooth it by a Gaussian filter of this width, in cells of the
+    /// grid of distances, 0 to 10 [default: by the measured noise, 0.7 to 3]
+    #[arg(long, value_name = "CELLS", value_parser = number, requires = "mesh_in", help_heading = "Surface")]
+    pub(crate) mesh_smooth: Option<f64>,
+}
+
+/// Which edges of a mesh stay sharp.
+fn mesh_edges(text: &str) -> Result<MeshEdges, String> {
+    match text {
+        "auto" => Ok(MeshEdges::Auto),
+        "none" => Ok(MeshEdges::Rounded),
+        _ => Ok(MeshEdges::Angle(number(text)?)),
+    }
+}
+
+/// [`Line`] from an argument.
+fn line(text: &str) -> Result<Line, String> {
+    let point = |word: &str| {
+        let numbers: Vec<f64> = word.split(',').map(|word| number(word).ok()).collect::<Option<_>>()?;
+        <[f64; 3]>::try_from(numbers).ok().map(DVec3::from)
+    };
+    let points: Option<Vec<DVec3>> = text.split_whitespace().map(point).collect();
+    match points {
+        Some(points) if points.len() > 1 => Ok(Line(points.array_windows().copied().collect())),
+        _ => Err(format!("`{text}` is no line of two points or more, such as `0,0,0 1,0,0`")),
+    }
 }
 
 /// The mesh that is sampled again, for the report.
@@ -32,15 +98,17 @@ pub(crate) struct RemeshInfo {
 
 /// The field of the mesh in a file, if one is requested.
 pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(MeshField, RemeshInfo)>, Failure> {
-    let Some(path) = &arguments.mesh_in else { return Ok(None) };
+    let given = &arguments.mesh;
+    let Some(path) = &given.mesh_in else { return Ok(None) };
     let wrong = |error: &dyn std::fmt::Display| Failure::Usage(format!("{}: {error}", path.display()));
     let bytes = read(path).map_err(|error| Failure::Unreadable { path: path.clone(), error })?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mesh = TriangleMesh::read(&name, bytes).map_err(|error| wrong(&error))?;
-    let solid = mesh.solid().map_err(|error| wrong(&error))?;
-    let mut options = MeshOptions::with_edges(arguments.mesh_edges.unwrap_or_default());
-    options.borders = arguments.mesh_borders.map(|choice| choice == MeshBorders::Keep);
-    options.smooth = arguments.mesh_smooth;
+    let lines: Vec<[DVec3; 2]> = given.mesh_lines.iter().flat_map(|line| line.0.iter().copied()).collect();
+    let solid = mesh.solid().map_err(|error| wrong(&error))?.with_edges_along(&lines);
+    let mut options = MeshOptions::with_edges(given.mesh_edges.unwrap_or_default());
+    options.borders = given.mesh_borders.map(|choice| choice == MeshBorders::Keep);
+    options.smooth = given.mesh_smooth;
     let field = solid.field(&options).map_err(|error| wrong(&error))?;
     let info = RemeshInfo { mesh: MeshInfo::new(&name, mesh.notes(), &field), change: None };
     Ok(Some((field, info)))
@@ -100,8 +168,19 @@ impl RemeshInfo {
 
     /// The lines of the report before the run.
     pub(crate) fn lines(&self) -> Vec<String> {
-        let MeshInfo { name, vertices, faces, pieces, border_edges, fan_edges, mended, notes, part, scan } =
-            &self.mesh;
+        let MeshInfo {
+            name,
+            vertices,
+            faces,
+            pieces,
+            border_edges,
+            fan_edges,
+            mended,
+            has_colours,
+            notes,
+            part,
+            scan,
+        } = &self.mesh;
         let mut lines = vec![
             format!("mesh: {name}"),
             format!(
@@ -125,6 +204,9 @@ impl RemeshInfo {
                 "{} with more than two faces: inside is where the winding number is above a half",
                 counted(*fan_edges, "edge", "edges")
             ));
+        }
+        if *has_colours {
+            lines.push("its colours are columns of the particles: red, green and blue".to_owned());
         }
         lines.extend(part.iter().flat_map(made_of_part));
         lines.extend(scan.iter().flat_map(made_of_scan));

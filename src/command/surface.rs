@@ -70,7 +70,8 @@ pub(crate) fn read_text(arguments: &mut SurfaceArguments) -> Result<(), Failure>
     }
     let is_word = text.len() >= SHORTEST && text.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'-');
     let is_name = names().any(|name| name == text) || is_word && formula::similar(&text, names()).is_some();
-    let is_chosen = arguments.surface.is_some() || arguments.points.is_some() || arguments.mesh_in.is_some();
+    let is_chosen =
+        arguments.surface.is_some() || arguments.points.is_some() || arguments.mesh.mesh_in.is_some();
     if is_name && !is_chosen {
         arguments.surface = Some(text);
     } else {

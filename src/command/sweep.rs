@@ -25,7 +25,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     std::fs::create_dir_all(&arguments.out).map_err(in_directory)?;
     arguments.sampling.check(false)?;
     let settings_in = |bounds: &Bounds| arguments.sampling.settings(bounds);
-    if arguments.surface.mesh_in.is_some() {
+    if arguments.surface.mesh.mesh_in.is_some() {
         let message = "--mesh-in has no parameter that could move its surface: sweep a formula";
         return Err(Failure::Usage(message.to_owned()));
     }

@@ -2,17 +2,18 @@
 //!
 //! The specification is Khronos', <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
 
-use super::RecordText;
 use super::vertices::Indexed;
+use super::{RecordText, colour_columns, is_of_colour};
 use crate::math::functions::{cos, pow, sin_cos};
 use crate::particles::Particles;
-use crate::quality::Measurements;
+use crate::quality::{Measurements, NamedValues};
 use glam::{DVec3, Vec3};
 use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// Numbers of the specification: types of components and kinds of buffers.
 const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
@@ -31,8 +32,8 @@ struct BufferColumn {
     bytes: Vec<u8>,
 }
 
-/// Writes the triangles with vertex normals, the particles' generation levels as colours and, for
-/// programs, as the attribute `_LEVEL`, and added values. The z axis, which points up here, is
+/// Writes the triangles with vertex normals, the colours that were added or those of the particles'
+/// generation levels, which programs find as the attribute `_LEVEL`, and added values. The z axis, which points up here, is
 /// turned to glTF's y. A mesh without triangles is an empty scene.
 pub(super) fn write(
     particles: &Particles,
@@ -90,7 +91,26 @@ fn columns(
         accessor,
         bytes,
     };
-    let added = measured.values.iter().map(|added| BufferColumn {
+    let painted = colour_columns(measured);
+    let light =
+        |column: &NamedValues, row: u32| (65_535.0 * linear(column.values[row as usize])).round() as u16;
+    let colour = match painted {
+        Some(parts) => attribute(
+            "COLOR_0",
+            accessor(UNSIGNED_SHORT, "VEC4", r#","normalized":true"#),
+            rows.iter()
+                .flat_map(|&row| parts.map(|part| light(part, row)).into_iter().chain([u16::MAX]))
+                .flat_map(u16::to_le_bytes)
+                .collect(),
+        ),
+        None => attribute(
+            "COLOR_0",
+            accessor(UNSIGNED_BYTE, "VEC4", r#","normalized":true"#),
+            levels.clone().flat_map(|level| colours[level as usize]).collect(),
+        ),
+    };
+    let others = measured.values.iter().filter(|added| !is_of_colour(measured, &added.name));
+    let added = others.map(|added| BufferColumn {
         name: format!("_{}", added.name.to_ascii_uppercase()).into(),
         target: ARRAY_BUFFER,
         accessor: accessor(FLOAT, "SCALAR", ""),
@@ -101,11 +121,7 @@ fn columns(
     let mut columns = vec![
         attribute("POSITION", accessor(FLOAT, "VEC3", &extent), vectors(&positions)),
         attribute("NORMAL", accessor(FLOAT, "VEC3", ""), vectors(normals)),
-        attribute(
-            "COLOR_0",
-            accessor(UNSIGNED_BYTE, "VEC4", r#","normalized":true"#),
-            levels.clone().flat_map(|level| colours[level as usize]).collect(),
-        ),
+        colour,
         // Attributes cannot be 32-bit integers.
         attribute(
             "_LEVEL",
@@ -121,6 +137,11 @@ fn columns(
         bytes: triangles.as_flattened().iter().flat_map(|index| index.to_le_bytes()).collect(),
     });
     columns
+}
+
+/// The linear share of light of a value in sRGB (IEC 61966-2-1).
+fn linear(value: f32) -> f32 {
+    if value <= 0.040_45 { value / 12.92 } else { pow((value + 0.055) / 1.055, 2.4) }
 }
 
 /// The text part, JSON: a scene with one mesh, and where its columns are in the buffer.

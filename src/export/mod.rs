@@ -243,6 +243,42 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> Vec<&'sta
     COLUMNS.iter().filter(is_there).collect()
 }
 
+/// Names of added columns that are the parts of a colour in sRGB, from 0 to 1. PLY has them in
+/// eight bits and GLB as the colours of its vertices, as programs expect.
+pub const COLOURS: [&str; 3] = ["red", "green", "blue"];
+
+/// The added columns of a colour, if it is complete.
+fn colour_columns(measured: &quality::Measurements) -> Option<[&quality::NamedValues; 3]> {
+    let column = |name: &&str| measured.values.iter().find(|added| added.name == **name);
+    let [red, green, blue] = &COLOURS;
+    Some([column(red)?, column(green)?, column(blue)?])
+}
+
+/// Whether an added column is a part of a colour.
+fn is_of_colour(measured: &quality::Measurements, name: &str) -> bool {
+    COLOURS.contains(&name) && colour_columns(measured).is_some()
+}
+
+/// The type of each added column in PLY, where the others have this type.
+fn kinds_of_added(
+    measured: &quality::Measurements,
+    kind: ColumnKind,
+) -> impl Iterator<Item = (ColumnKind, &str)> + '_ {
+    measured.values.iter().map(move |added| {
+        let kind = if is_of_colour(measured, &added.name) { ColumnKind::Uchar } else { kind };
+        (kind, &*added.name)
+    })
+}
+
+/// A number as one of this type.
+fn cell_of(kind: ColumnKind, number: f32) -> CellValue {
+    match kind {
+        ColumnKind::Uchar => CellValue::Uchar((255.0 * number).round() as u8),
+        ColumnKind::Coordinate => CellValue::Double(number.into()),
+        _ => CellValue::Float(number),
+    }
+}
+
 /// The values of a row in the added columns.
 fn added(measured: &quality::Measurements, row: usize) -> impl Iterator<Item = CellValue> + '_ {
     measured.values.iter().map(move |added| CellValue::Float(added.values[row]))
@@ -281,24 +317,24 @@ fn ply_columns(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let (n, columns) = (particles.len(), columns(particles, measured));
+    let kinds: Vec<(ColumnKind, &str)> = kinds_of_added(measured, ColumnKind::Float).collect();
     if rows.start == 0 {
-        let added = measured.values.iter().map(|added| (ColumnKind::Float, &*added.name));
-        let properties = columns.iter().map(|column| (column.kind, column.name)).chain(added);
+        let properties = columns.iter().map(|column| (column.kind, column.name)).chain(kinds.iter().copied());
         ply_header(particles, n, properties, triangles.map(<[_]>::len), record, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
         for column in &columns {
             (column.read)(particles, measured, i).write_binary(out)?;
         }
-        for value in added(measured, i) {
-            value.write_binary(out)?;
+        for ((kind, _), added) in kinds.iter().zip(&measured.values) {
+            cell_of(*kind, added.values[i]).write_binary(out)?;
         }
     }
     ply_faces(&triangles.unwrap_or_default()[rows.start.max(n) - n..rows.end.max(n) - n], out)
 }
 
-/// PLY of a mesh: rows of vertices and of triangles. All properties of a vertex have one type,
-/// because some readers require it.
+/// PLY of a mesh: rows of vertices and of triangles. All properties of a vertex but its colour have
+/// one type, because some readers require it.
 fn ply_mesh(
     particles: &Particles,
     measured: &quality::Measurements,
@@ -308,16 +344,18 @@ fn ply_mesh(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let (n, is_double) = (vertices.rows.len(), is_double(particles));
+    let own = if is_double { ColumnKind::Coordinate } else { ColumnKind::Float };
+    let kinds: Vec<(ColumnKind, &str)> = kinds_of_added(measured, own).collect();
     if rows.start == 0 {
-        let added = measured.values.iter().map(|added| &*added.name);
-        let names = COLUMNS[..6].iter().map(|column| column.name).chain(added);
-        let properties = names.map(|name| (ColumnKind::Coordinate, name));
+        let names = COLUMNS[..6].iter().map(|column| column.name);
+        let properties = names.map(|name| (ColumnKind::Coordinate, name)).chain(kinds.iter().copied());
         ply_header(particles, n, properties, Some(vertices.triangles.len()), record, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
         let of_kind = |c: f32| if is_double { CellValue::Double(c.into()) } else { CellValue::Float(c) };
         let (row, normal) = (vertices.rows[i] as usize, vertices.normals[i].to_array().map(of_kind));
-        let added = measured.values.iter().map(|added| of_kind(added.values[row]));
+        let added =
+            kinds.iter().zip(&measured.values).map(|((kind, _), added)| cell_of(*kind, added.values[row]));
         for value in coordinates(particles, row).into_iter().chain(normal).chain(added) {
             value.write_binary(out)?;
         }

@@ -44,6 +44,11 @@ impl Image {
             }
         }
         let placement = self.placement.at_index([-(ADDED as f64); 3].into())?;
-        Ok(Self { placement, notes: self.notes.clone(), ..Self::filtered(size, voxels).await? })
+        Ok(Self {
+            placement,
+            order: self.order,
+            notes: self.notes.clone(),
+            ..Self::filtered(size, voxels).await?
+        })
     }
 }

@@ -30,7 +30,7 @@ impl Image {
         assert!(step > 0, "a step from voxel to voxel is at least 1");
         let size = self.size.map(|n| n.div_ceil(step));
         if size.contains(&1) {
-            return Err(ImageError::Flat { size });
+            return Err(ImageError::Flat { size: self.order.sorted(size) });
         }
         let (mut bytes, mut meter) = (Vec::new(), Meter::default());
         for k in (0..self.size[2]).step_by(step) {
@@ -44,8 +44,8 @@ impl Image {
         }
         let (layout, len) = (self.voxels.packed(), size.iter().product());
         let voxels = Voxels::of_file(bytes, layout, len).expect("as many voxels as were kept");
-        let image = Self::of(size, voxels).await?;
-        let [x, y, z] = self.size;
+        let image = Self::of(self.order.sorted(size), self.order, voxels).await?;
+        let [x, y, z] = self.size();
         let note = format!("Of {x} × {y} × {z} voxels, one in {step} along each axis was kept.");
         let notes = self.notes.iter().cloned().chain([note]).collect();
         Ok(Self { placement: self.placement.coarser(step as f64)?, notes, ..image })

@@ -134,7 +134,7 @@ impl Image {
             ));
         }
         let image = Self::filtered(self.size, distances).await?;
-        Ok(Self { placement: self.placement, notes: notes.into(), ..image })
+        Ok(Self { placement: self.placement, order: self.order, notes: notes.into(), ..image })
     }
 }
 

@@ -149,6 +149,26 @@ fn no_label(value: f64, count: usize, known: &[f64]) -> String {
     format!("no voxel has the label {value}; those of the image are {}{more}", listed.join(", "))
 }
 
+/// The axis of an array along which neighbours are next to each other in memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AxisOrder {
+    /// The first one, as in Fortran and most image files.
+    #[default]
+    FirstFastest,
+    /// The last one, as in C and NumPy.
+    LastFastest,
+}
+
+impl AxisOrder {
+    /// What the axes of the array have, from the fastest-changing axis on; or back.
+    fn sorted<T>(self, [a, b, c]: [T; 3]) -> [T; 3] {
+        match self {
+            Self::FirstFastest => [a, b, c],
+            Self::LastFastest => [c, b, a],
+        }
+    }
+}
+
 /// A grid of voxels with a placement in space.
 ///
 /// The voxels keep the type and byte order of the file or array; copies of an image and its fields
@@ -172,9 +192,12 @@ fn no_label(value: f64, count: usize, known: &[f64]) -> String {
 /// ```
 #[derive(Clone)]
 pub struct Image {
+    /// From the fastest-changing axis on, as are the columns of the placement.
     size: [usize; 3],
     voxels: Voxels,
     placement: Placement,
+    /// How the axes are ordered for users.
+    order: AxisOrder,
     range: [f64; 2],
     /// Counted when it is first asked for.
     histogram: Arc<OnceLock<Histogram>>,
@@ -184,9 +207,9 @@ pub struct Image {
 impl Debug for Image {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.debug_struct("Image")
-            .field("size", &self.size)
+            .field("size", &self.size())
             .field("voxel_type", &self.voxel_type())
-            .field("placement", &self.placement)
+            .field("placement", &self.placement())
             .field("range", &self.range)
             .finish_non_exhaustive()
     }
@@ -202,16 +225,19 @@ impl Image {
     /// [`ImageError::Size`], [`Flat`](ImageError::Flat), [`NotFinite`](ImageError::NotFinite) or
     /// [`Constant`](ImageError::Constant).
     pub fn new<T: Voxel>(size: [usize; 3], voxels: impl AsRef<[T]>) -> Result<Self, ImageError> {
-        slices::complete(Self::of(size, Voxels::new(voxels.as_ref())))
+        slices::complete(Self::of(size, AxisOrder::FirstFastest, Voxels::new(voxels.as_ref())))
     }
 
-    /// [`Image::new`] from the bytes of numbers, in the byte order of the machine.
+    /// [`Image::new`] from the bytes of numbers, in the byte order of the machine, and with the axes
+    /// in either order: size, spacing and affine map are always those of the axes from the first
+    /// to the last.
     ///
     /// # Errors
     ///
     /// As for [`Image::new`].
     pub fn from_bytes(
         size: [usize; 3],
+        order: AxisOrder,
         voxel_type: VoxelType,
         bytes: impl Into<Vec<u8>>,
     ) -> Result<Self, ImageError> {
@@ -220,16 +246,16 @@ impl Image {
         let wanted = size.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
         let wrong = ImageError::Size { size, wanted, found: len as u64 };
         let layout = Layout::plain(voxel_type, cfg!(target_endian = "big"));
-        slices::complete(Self::of(size, Voxels::of_file(bytes, layout, len).ok_or(wrong)?))
+        slices::complete(Self::of(size, order, Voxels::of_file(bytes, layout, len).ok_or(wrong)?))
     }
 
     /// [`Image::new`] of the result of a filter, in slices of work.
     pub(crate) async fn filtered(size: [usize; 3], voxels: Vec<f32>) -> Result<Self, ImageError> {
-        Self::of(size, Voxels::filtered(voxels)).await
+        Self::of(size, AxisOrder::FirstFastest, Voxels::filtered(voxels)).await
     }
 
     /// The image with these voxels, one unit apart, checked in slices of work.
-    async fn of(size: [usize; 3], voxels: Voxels) -> Result<Self, ImageError> {
+    async fn of(size: [usize; 3], order: AxisOrder, voxels: Voxels) -> Result<Self, ImageError> {
         let wanted = size.iter().try_fold(1_u64, |product, &n| product.checked_mul(n as u64));
         let found = voxels.len() as u64;
         if wanted != Some(found) {
@@ -238,30 +264,34 @@ impl Image {
         if size.iter().any(|&n| n < 2) {
             return Err(ImageError::Flat { size });
         }
+        let size = order.sorted(size);
         let range = voxels.range().await.map_err(|(count, first)| {
             let first = [first % size[0], first / size[0] % size[1], first / size[0] / size[1]];
-            ImageError::NotFinite { count, first }
+            ImageError::NotFinite { count, first: order.sorted(first) }
         })?;
         if range[0] == range[1] {
             return Err(ImageError::Constant { value: range[0] });
         }
-        let placement = Placement::default();
-        Ok(Self { size, voxels, placement, range, histogram: Arc::default(), notes: Arc::default() })
+        let (histogram, notes) = Default::default();
+        let placement = Placement::default().sorted(order);
+        Ok(Self { size, voxels, placement, order, range, histogram, notes })
     }
 
-    /// Sets the distances between neighbouring voxels along each axis; origin and directions stay.
+    /// Sets the distances between neighbouring voxels along each axis, from the first axis of the
+    /// array to the last; origin and directions stay.
     ///
     /// # Errors
     ///
     /// [`ImageError::Singular`] if a distance is not positive.
     pub fn with_spacing(self, spacing: [f64; 3]) -> Result<Self, ImageError> {
-        let [x, y, z] = self.placement.directions();
+        let placement = self.placement();
+        let [x, y, z] = placement.directions();
         let axes = [x * spacing[0], y * spacing[1], z * spacing[2]];
         if spacing.iter().any(|&length| length <= 0.0) {
             return Err(ImageError::Singular { axes });
         }
-        let origin = self.placement.origin();
-        self.placed(Placement::new(DMat3::from_cols(axes[0], axes[1], axes[2]), origin)?)
+        let matrix = DMat3::from_cols(axes[0], axes[1], axes[2]);
+        Ok(self.placed(Placement::new(matrix, placement.origin())?))
     }
 
     /// Moves voxel (0, 0, 0) to this point.
@@ -270,8 +300,8 @@ impl Image {
     ///
     /// [`ImageError::Singular`] if it is not finite.
     pub fn with_origin(self, origin: DVec3) -> Result<Self, ImageError> {
-        let placement = Placement::new(self.placement.matrix(), origin)?;
-        self.placed(placement)
+        let placement = Placement::new(self.placement().matrix(), origin)?;
+        Ok(self.placed(placement))
     }
 
     /// Places the image by an affine map of its voxel indices: coordinate r is `rows[r]` · (i, j,
@@ -281,11 +311,12 @@ impl Image {
     ///
     /// [`ImageError::Singular`] if the map has no inverse or is not finite.
     pub fn with_affine(self, rows: [[f64; 4]; 3]) -> Result<Self, ImageError> {
-        self.placed(Placement::from_rows(rows)?)
+        Ok(self.placed(Placement::from_rows(rows)?))
     }
 
-    fn placed(self, placement: Placement) -> Result<Self, ImageError> {
-        Ok(Self { placement, ..self })
+    /// The image with this map from the indices along its axes.
+    fn placed(self, placement: Placement) -> Self {
+        Self { placement: placement.sorted(self.order), ..self }
     }
 
     /// The surface on which the image has the value `iso`, with brighter voxels inside. For the
@@ -298,16 +329,16 @@ impl Image {
         slices::complete(ImageField::made(self, iso, false))
     }
 
-    /// Number of voxels along each axis.
+    /// Number of voxels along each axis, from the first axis of the array to the last.
     #[must_use]
     pub fn size(&self) -> [usize; 3] {
-        self.size
+        self.order.sorted(self.size)
     }
 
     /// The map from voxel indices to points.
     #[must_use]
     pub fn placement(&self) -> Placement {
-        self.placement
+        self.placement.sorted(self.order)
     }
 
     /// Smallest and largest value of the voxels.
@@ -367,7 +398,7 @@ impl Image {
         self.voxels.write(self.size[0] * (j + self.size[1] * k), zero, out);
     }
 
-    /// The value of a voxel.
+    /// The value of a voxel, by its indices from the fastest-changing axis on.
     fn voxel(&self, [i, j, k]: [usize; 3]) -> f64 {
         self.voxels.at(i + self.size[0] * (j + self.size[1] * k))
     }

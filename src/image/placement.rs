@@ -1,6 +1,6 @@
 //! The affine map from voxel indices to points.
 
-use super::ImageError;
+use super::{AxisOrder, ImageError};
 use crate::math::{Bounds, Interval, Sym3};
 use glam::{DMat3, DVec3};
 
@@ -52,6 +52,18 @@ impl Placement {
     pub fn from_rows(rows: [[f64; 4]; 3]) -> Result<Self, ImageError> {
         let column = |c: usize| DVec3::new(rows[0][c], rows[1][c], rows[2][c]);
         Self::new(DMat3::from_cols(column(0), column(1), column(2)), column(3))
+    }
+
+    /// The map of indices that are given in the other order of axes, or in the same one.
+    pub(super) fn sorted(&self, order: AxisOrder) -> Self {
+        let columns = |m: &DMat3| order.sorted([m.x_axis, m.y_axis, m.z_axis]);
+        let [x, y, z] = columns(&self.matrix);
+        let [u, v, w] = columns(&self.inverse.transpose());
+        Self {
+            matrix: DMat3::from_cols(x, y, z),
+            inverse: DMat3::from_cols(u, v, w).transpose(),
+            origin: self.origin,
+        }
     }
 
     /// The placement whose voxel (0, 0, 0) lies at these indices of this one.

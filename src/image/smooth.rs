@@ -169,7 +169,7 @@ impl Image {
             slices::pause().await;
         }
         let image = Self::filtered(self.size, voxels).await?;
-        Ok(Self { placement: self.placement, notes: self.notes.clone(), ..image })
+        Ok(Self { placement: self.placement, order: self.order, notes: self.notes.clone(), ..image })
     }
 
     /// The standard deviation of the noise in the voxel values. It is estimated from second

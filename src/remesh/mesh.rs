@@ -27,6 +27,8 @@ use glam::DVec3;
 pub struct TriangleMesh {
     vertices: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
+    /// One for each vertex, or none at all.
+    colours: Vec<[f32; 3]>,
     notes: Vec<String>,
 }
 
@@ -56,7 +58,22 @@ impl TriangleMesh {
         if let Some(vertex) = vertices.iter().position(|p| !is_usable(p)) {
             return Err(MeshError::NotFinite { vertex });
         }
-        Ok(Self { vertices, faces, notes: Vec::new() })
+        Ok(Self::of_parts(vertices, faces))
+    }
+
+    /// With these colours of its vertices: red, green and blue in sRGB, from 0 to 1. [`MeshSolid`]
+    /// has the colour at any place.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::Colours`] unless there is one for each vertex.
+    ///
+    /// [`MeshSolid`]: crate::MeshSolid
+    pub fn with_colours(self, colours: Vec<[f32; 3]>) -> Result<Self, MeshError> {
+        if colours.len() != self.vertices.len() {
+            return Err(MeshError::Colours { count: colours.len(), vertices: self.vertices.len() });
+        }
+        Ok(Self { colours, ..self })
     }
 
     /// Reads a mesh from an STL, OBJ, PLY, OFF, GLB or 3MF file; the content decides which.
@@ -73,14 +90,14 @@ impl TriangleMesh {
     /// [`TriangleMesh::read`] in slices.
     pub(crate) async fn reading(name: &str, bytes: Vec<u8>) -> Result<Self, MeshError> {
         let reader = Reader::of_mesh(name, bytes)?;
-        let FileMesh { position, corners, faces, warnings, .. } = reader.read(|_| ()).await?;
+        let FileMesh { position, colour, corners, faces, warnings, .. } = reader.read(|_| ()).await?;
         let mut triangles = Vec::new();
         let mut from = 0;
         for to in faces {
             let polygon = &corners[core::mem::replace(&mut from, to as usize)..to as usize];
             triangles.extend((2..polygon.len()).map(|k| [polygon[0], polygon[k - 1], polygon[k]]));
         }
-        Ok(Self { notes: warnings, ..Self::new(position, triangles)? })
+        Ok(Self { colours: colour, notes: warnings, ..Self::new(position, triangles)? })
     }
 
     /// The vertices.
@@ -93,6 +110,13 @@ impl TriangleMesh {
     #[must_use]
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
+    }
+
+    /// The colours of the vertices, red, green and blue in sRGB from 0 to 1; empty if the mesh has
+    /// none. They are read from PLY, OBJ, OFF and GLB files.
+    #[must_use]
+    pub fn colours(&self) -> &[[f32; 3]] {
+        &self.colours
     }
 
     /// What the reader left out of the file, in sentences for the user.
@@ -138,7 +162,7 @@ impl TriangleMesh {
 
     /// The mesh of these faces of prepared vertices.
     pub(super) fn of_parts(vertices: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Self {
-        Self { vertices, faces, notes: Vec::new() }
+        Self { vertices, faces, colours: Vec::new(), notes: Vec::new() }
     }
 }
 

@@ -9,6 +9,7 @@
 //! * *Scans and smooth shapes*. The signed distance from the mesh, computed on a grid, becomes an
 //!   image, and a spline through its voxels is f (`scan`).
 
+mod colours;
 mod compare;
 mod cross;
 mod edges;
@@ -74,6 +75,14 @@ pub enum MeshError {
         index: u32,
         /// Number of vertices.
         count: usize,
+    },
+    /// There is not one colour for each vertex.
+    #[error("there are {count} colours, and {vertices} vertices; give one for each vertex")]
+    Colours {
+        /// Number of colours.
+        count: usize,
+        /// Number of vertices.
+        vertices: usize,
     },
     /// A vertex is not finite or is beyond ±1e30.
     #[error("vertex {vertex}, counted from 0, is not finite or beyond ±1e30; give it a place")]
@@ -284,7 +293,7 @@ impl MeshSolid {
             return Err(MeshError::Angle { angle });
         }
         let is_rimmed = borders.unwrap_or(self.is_sheet()) && self.border_edges() > 0;
-        let must_keep = is_rimmed || matches!(edges, MeshEdges::Angle(_));
+        let must_keep = is_rimmed || matches!(edges, MeshEdges::Angle(_)) || self.has_marks();
         if must_keep && smooth.is_some() {
             return Err(MeshError::Both);
         }
@@ -303,11 +312,12 @@ impl MeshSolid {
         let angle = match edges {
             MeshEdges::Angle(angle) => Some(angle),
             MeshEdges::Rounded => None,
+            MeshEdges::Auto if self.has_marks() => Some(DEFAULT_EDGE_ANGLE),
             MeshEdges::Auto => Patches::new(&self, DEFAULT_EDGE_ANGLE.to_radians(), faces, PI)
                 .are_of_part()
                 .then_some(DEFAULT_EDGE_ANGLE),
         };
-        if angle.is_none() && !is_rimmed {
+        if angle.is_none() && !is_rimmed && !self.has_marks() {
             return self.into_scan(smooth).await;
         }
         // No faces meet at more than 180°.

@@ -67,6 +67,7 @@ impl Patches {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let normals: Vec<DVec3> = mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
         let mut is_sharp = sharp_edges(edges, &normals, angle);
+        is_sharp.iter_mut().zip(solid.marked_edges()).for_each(|(own, is_marked)| *own |= is_marked);
         let planes = Planes::new(solid, &normals);
         planes.add_lone_bends(edges, &mut is_sharp);
         bridge(mesh, edges, &mut is_sharp);

@@ -1,5 +1,6 @@
 //! Repairs of a mesh before it becomes a field.
 
+use super::colours::Colours;
 use super::edges::{Edges, ends_of};
 use super::mesh::volume;
 use super::tree::Tree;
@@ -57,6 +58,10 @@ pub struct MeshSolid {
     pub(super) origin: DVec3,
     pub(super) edges: Arc<Edges>,
     pub(super) tree: Arc<Tree>,
+    /// The mesh before its repair, if it has colours.
+    colours: Option<Arc<Colours>>,
+    /// Segments along which the edges of the mesh are sharp, whatever their angle.
+    marks: Arc<[[DVec3; 2]]>,
     repairs: MeshRepairs,
     borders: usize,
     pub(super) fans: usize,
@@ -123,6 +128,8 @@ impl TriangleMesh {
         // Reversing a face renumbers its sides.
         let edges = Edges::new(&faces);
         let mesh = TriangleMesh::of_parts(vertices, faces);
+        let has_colours = !self.colours().is_empty();
+        let colours = has_colours.then(|| Arc::new(Colours::new(near, self.colours().to_vec())));
         pause().await;
         let tree = Tree::new(&mesh.all_corners());
         let is_sheet = is_sheet(&mesh, borders)?;
@@ -131,6 +138,8 @@ impl TriangleMesh {
             origin,
             edges: Arc::new(edges),
             tree: Arc::new(tree),
+            colours,
+            marks: Arc::default(),
             repairs,
             borders,
             fans,
@@ -209,9 +218,60 @@ impl MeshSolid {
         normal.dot(p - nearest.point) < 0.0
     }
 
-    /// Whether both are copies of the same mesh.
+    /// Keeps the edges along these segments sharp as well, whatever their angle: the edges of the
+    /// mesh both ends of which lie on one of them. Edges that do not divide a patch, as a lone one
+    /// within a smooth surface, are rounded nevertheless: [`MeshKind::Parts`] counts them. With
+    /// [`MeshEdges::Rounded`] no others are sharp.
+    ///
+    /// [`MeshKind::Parts`]: crate::MeshKind::Parts
+    /// [`MeshEdges::Rounded`]: crate::MeshEdges::Rounded
+    #[must_use]
+    pub fn with_edges_along(self, segments: &[[DVec3; 2]]) -> Self {
+        let marks = segments.iter().map(|segment| segment.map(|end| end - self.origin)).collect();
+        Self { marks, ..self }
+    }
+
+    /// Whether edges are marked as sharp.
+    pub(super) fn has_marks(&self) -> bool {
+        !self.marks.is_empty()
+    }
+
+    /// Whether each edge is marked as sharp; empty if none is.
+    pub(super) fn marked_edges(&self) -> Vec<bool> {
+        if self.marks.is_empty() {
+            return Vec::new();
+        }
+        // A program may give places in single precision.
+        let width = 10.0 * SAME * self.mesh.bounds().diagonal();
+        let tree = Tree::new(&self.marks.iter().map(|&[a, b]| [a, b, b]).collect::<Vec<_>>());
+        let near = |vertex: u32| {
+            let mut found = Vec::new();
+            tree.within(self.mesh.vertices()[vertex as usize], width * width, |own| found.push(own.triangle));
+            found
+        };
+        let is_marked = |edge: usize| {
+            let [a, b] = self.edges.ends(edge).map(near);
+            a.iter().any(|own| b.contains(own))
+        };
+        (0..self.edges.len()).map(is_marked).collect()
+    }
+
+    /// Whether the mesh has colours.
+    #[must_use]
+    pub fn has_colours(&self) -> bool {
+        self.colours.is_some()
+    }
+
+    /// The colour of the mesh, before its repair, at its point nearest to `p`: red, green and blue
+    /// in sRGB, from 0 to 1; none if it [has no colours](TriangleMesh::colours).
+    #[must_use]
+    pub fn colour_at(&self, p: DVec3) -> Option<[f32; 3]> {
+        Some(self.colours.as_ref()?.at(p - self.origin))
+    }
+
+    /// Whether both are copies of the same mesh, with the same marks.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.mesh, &other.mesh)
+        Arc::ptr_eq(&self.mesh, &other.mesh) && self.marks == other.marks
     }
 }
 

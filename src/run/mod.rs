@@ -390,11 +390,6 @@ impl<'f, F: Field + 'f> Run<'f, F> {
         self.state.check_not_empty(&self.field)
     }
 
-    /// The report on measured particles, once their mesh is joined.
-    pub(crate) fn reported(&mut self) -> Report {
-        self.state.reported(&self.field)
-    }
-
     /// The sample of a run that has ended, with this report on it.
     pub(crate) fn into_sample(self, report: Report) -> Sample {
         Sample::new(self.state, report)

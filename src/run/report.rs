@@ -316,7 +316,10 @@ impl<'f> RunState<'f> {
             } else if is_due {
                 let input = self.measuring_input(measured);
                 let result = input.in_slices(&self.field.function(field), self.sampler.frame()).await;
-                self.keep(field, result);
+                self.keep(result);
+                while !self.close(field, 1) {
+                    slices::pause().await;
+                }
             }
             self.reported(field)
         });
@@ -336,9 +339,12 @@ impl<'f> RunState<'f> {
                 let field = self.field.shared(field);
                 self.measuring_input(measured).work(field, self.sampler.frame())
             });
-            let measured = self.measuring.work.insert(work).advance(budget)?;
+            let result = self.measuring.work.insert(work).advance(budget)?;
             self.measuring.work = None;
-            self.keep(field, measured);
+            self.keep(result);
+        }
+        if measured != Measured::Nothing && !self.close(field, budget) {
+            return None;
         }
         Some(self.reported(field))
     }
@@ -374,17 +380,21 @@ impl<'f> RunState<'f> {
         }
     }
 
-    fn keep(&mut self, field: &dyn Field, MeasuringResult { front, now, facing, sheets }: MeasuringResult) {
+    fn keep(&mut self, MeasuringResult { front, now, facing, sheets }: MeasuringResult) {
         if front.is_some() {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }
         (self.measuring.measured, self.measuring.facing, self.measuring.sheets) =
             (now, Some(facing), Some(sheets));
-        // A refined run already has its mesh.
-        if self.measuring.measured.opening.is_some() && !self.sampler.triangles().is_empty() {
-            while self.join(field, u32::MAX).is_none() {}
-        }
         self.take_topology();
+    }
+
+    /// Joins the particles if their triangles leave the surface open: only the mesh, and the field,
+    /// show which of the gaps are surface. With up to `budget` slices of the work; returns whether
+    /// it is complete.
+    fn close(&mut self, field: &dyn Field, budget: u32) -> bool {
+        let is_due = self.measuring.measured.opening.is_some() && self.meshing.joined().is_none();
+        !is_due || self.join(field, budget).is_some()
     }
 
     /// The report, with the present measurements.

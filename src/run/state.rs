@@ -234,12 +234,7 @@ impl<'f> RunState<'f> {
     /// [`Run::finish_with`](super::Run::finish_with).
     pub(super) fn finished(mut self, field: &dyn Field, measured: Measured) -> Result<Sample, Error> {
         self.check_not_empty(field)?;
-        let mut report = self.report_with(field, measured);
-        if self.measuring.measured.opening.is_some() {
-            // Only the field shows which of the gaps are surface.
-            slices::in_pool(|| while self.join(field, u32::MAX).is_none() {});
-            report = self.reported(field);
-        }
+        let report = self.report_with(field, measured);
         failure_of(field)?;
         Ok(Sample::new(self, report))
     }

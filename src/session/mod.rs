@@ -20,9 +20,9 @@ pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, d
 pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 pub use image::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
-#[cfg(all(feature = "images", feature = "points"))]
-pub use mesh::OpenedMesh;
 pub use mesh::{MeshBorder, MeshInfo, MeshPart, MeshScan};
+#[cfg(all(feature = "images", feature = "points"))]
+pub use mesh::{OpenedMesh, colour_values};
 #[cfg(feature = "images")]
 pub use opened::OpenedSource;
 pub use record::{FileRecord, FileRequest, ValueText};
@@ -606,7 +606,11 @@ impl Session {
     /// particles at the border of a model or an image, or of an open surface of the gallery, whose
     /// box was chosen for it. A closed one fits into its box for all values of its sliders.
     pub fn measure(&mut self, measured: Measured, budget: u32) -> Option<Report> {
-        self.run.measure_freely(measured, budget).map(|report| self.completed(report))
+        self.forget_comparison();
+        let report = self.run.measure_freely(measured, budget)?;
+        #[cfg(all(feature = "images", feature = "points"))]
+        self.add_colours();
+        Some(self.completed(report))
     }
 
     fn completed(&self, mut report: Report) -> Report {
@@ -635,11 +639,16 @@ impl Session {
 
     /// [`Run::join`], after which [`Session::compare`] has another mesh to compare.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
+        self.forget_comparison();
+        self.run.join(budget)
+    }
+
+    /// Forgets the comparison of a mesh that the run has no more.
+    fn forget_comparison(&mut self) {
         #[cfg(all(feature = "images", feature = "points"))]
         if self.run.mesh().is_none() {
             self.comparison = mesh::Comparison::None;
         }
-        self.run.join(budget)
     }
 
     /// Measures the particles at once: [`Session::measure`].
@@ -663,20 +672,13 @@ impl Session {
         const SLICES: u32 = 256;
         self.run.check_not_empty()?;
         let mut reporting = self.run.measure(measured);
-        let mut report = loop {
+        let report = loop {
             match reporting.step(SLICES) {
                 Some(report) => break report,
                 None => tell(reporting.fraction())?,
             }
         };
         drop(reporting);
-        if self.run.measured().opening.is_some() {
-            // Only the field shows which of the gaps are surface.
-            while self.join(SLICES).is_none() {
-                tell(1.0)?;
-            }
-            report = self.run.reported();
-        }
         let report = self.completed(report);
         Ok(self.run.into_sample(report))
     }

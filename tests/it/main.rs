@@ -42,6 +42,7 @@ mod holes;
 mod jumps;
 mod limits;
 mod mesh;
+mod mesh_colours;
 mod mesh_export;
 mod mesh_parity;
 mod models;

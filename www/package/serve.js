@@ -298,12 +298,7 @@ export function serve({ post, load }) {
     const particles = await run(of);
     const measuring = () => ({ phase: 'measuring', particles, fraction: core.fraction() });
     const measured = () => done(of, (budget) => core.measure('particles', budget), measuring);
-    let report = measure ? await measured() : null;
-    if (report?.warnings.some(({ code }) => code === 'open')) {
-      // Only the mesh, which evaluates the field, can tell which of the gaps are surface.
-      await done(of, (budget) => core.join(budget));
-      report = await measured();
-    }
+    const report = measure ? await measured() : null;
     for (const [name, value] of Object.entries(values)) {
       const taken = typeof value === 'string' ? value : held(value, core, `The function of the value ${name}`).call;
       const fault = await done(of, (budget) => core.add_value(name, taken, budget));
@@ -312,7 +307,8 @@ export function serve({ post, load }) {
     const isRemeshed = measure && answer.mesh !== null && box.formula === '';
     if (isRemeshed) await done(of, (budget) => core.join(budget));
     const change = isRemeshed ? await done(of, (budget) => core.compare(budget)) : null;
-    const columns = Object.keys(values).map((name) => [name, core.added_value(name)]);
+    // The columns of the program, and the colours of a mesh.
+    const columns = core.value_names().map((name) => [name, core.added_value(name)]);
     return columnsOf(core, {
       count: particles,
       report,

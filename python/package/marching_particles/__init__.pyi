@@ -1,5 +1,5 @@
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple, SupportsFloat, SupportsIndex, Union
 
 import numpy as np
@@ -82,6 +82,7 @@ class TriangleMesh(Field):
         edges: Union[Literal["auto"], float, None] = "auto",
         borders: Union[bool, None] = None,
         smooth: Union[float, None] = None,
+        lines: Iterable[npt.ArrayLike] = (),
     ) -> None: ...
     @property
     def bounds(self) -> tuple[_Corner, _Corner]: ...
@@ -103,6 +104,7 @@ def remesh(
     edges: Union[Literal["auto"], float, None] = "auto",
     borders: Union[bool, None] = None,
     smooth: Union[float, None] = None,
+    lines: Iterable[npt.ArrayLike] = (),
     **options: Any,
 ) -> Sample: ...
 

@@ -97,15 +97,10 @@ class Image(Field):
         else:
             voxels, own = _voxels(array)
             rows = _rows(spacing, origin, affine, own)
-            if voxels.flags.f_contiguous:
-                flat, size = voxels.ravel(order="F"), voxels.shape
-            else:
-                # The last axis changes fastest, and so it is the first one of the core.
-                flat, size = np.ascontiguousarray(voxels).ravel(), voxels.shape[::-1]
-                rows = rows[:, [2, 1, 0, 3]]
-            field, known = _core.Field.image(
-                flat.view(np.uint8), voxels.dtype.name, list(size), rows.tolist(), *choice
-            )
+            order = "F" if voxels.flags.f_contiguous else "C"
+            flat = voxels.ravel(order=order).view(np.uint8)
+            layout = (voxels.dtype.name, voxels.shape, order == "C", rows.tolist())
+            field, known = _core.Field.image(flat, *layout, *choice)
             what = f"{' × '.join(map(str, voxels.shape))} voxels"
         how = {"spacing": spacing, "origin": origin, "affine": affine, "iso": iso, "label": label}
         how.update(smooth=smooth, inside=inside, border=border)

@@ -30,6 +30,8 @@ class TriangleMesh(Field):
             it ends there if the mesh is an open surface; a solid has its holes closed.
         smooth: Width of a Gaussian in cells of the grid of a scan, 0 to 10: the mesh is taken for
             one if it is given. By default it is chosen by the noise.
+        lines: Lines along which edges are kept whatever their angle: arrays (k, 3) of k points
+            each. For pairs of vertices give ``vertices[pairs]``, of the shape (n, 2, 3).
 
     Attributes:
         bounds: The box of the surface, ``((x0, y0, z0), (x1, y1, z1))``.
@@ -45,7 +47,7 @@ class TriangleMesh(Field):
         OSError: If the file cannot be read.
     """
 
-    def __init__(self, mesh, *, edges="auto", borders=None, smooth=None):
+    def __init__(self, mesh, *, edges="auto", borders=None, smooth=None, lines=()):
         if edges is None:
             edges = "none"
         elif edges != "auto":
@@ -53,13 +55,19 @@ class TriangleMesh(Field):
         if borders not in (None, True, False):
             raise TypeError(f"borders must be True, False or None, and not {borders!r}")
         smooth = None if smooth is None else float(numbers("smooth", smooth, (), "a number"))
+        segments = [np.empty((0, 6))]
+        for line in lines:
+            line = numbers("lines", line, (None, 3), "arrays of points, of the shape (k, 3)")
+            segments.append(np.hstack([line[:-1], line[1:]]))
+        choice = (np.ascontiguousarray(np.vstack(segments)), edges, borders, smooth)
         if isinstance(mesh, (str, os.PathLike)):
             path = os.fspath(mesh)
             with open(path, "rb") as file:
                 content = file.read()
-            self._take("mesh_file", os.path.basename(path), content, edges, borders, smooth)
+            self._take("mesh_file", os.path.basename(path), content, *choice)
         else:
-            self._take("mesh", *map(np.array, _arrays(mesh)), edges, borders, smooth)
+            arrays = map(np.array, _arrays(mesh))
+            self._take("mesh", *arrays, _colours(mesh), *choice)
 
     def _take(self, name, *given):
         field, self._mesh, known = getattr(_core.Field, name)(*given)
@@ -97,7 +105,7 @@ def _taken(name, *given):
     return mesh
 
 
-def remesh(mesh, *, edges="auto", borders=None, smooth=None, **options):
+def remesh(mesh, *, edges="auto", borders=None, smooth=None, lines=(), **options):
     """Samples the surface of a triangle mesh anew, with even triangles.
 
     >>> import numpy as np
@@ -112,23 +120,45 @@ def remesh(mesh, *, edges="auto", borders=None, smooth=None, **options):
         edges: See :class:`TriangleMesh`.
         borders: See :class:`TriangleMesh`.
         smooth: See :class:`TriangleMesh`.
+        lines: See :class:`TriangleMesh`.
         options: The arguments of :func:`sample`, such as ``count``, ``spacing`` or ``adaptive``.
             ``method="refined"`` makes the triangles more even.
 
     Returns:
         A :class:`Sample`, whose :meth:`Sample.mesh` is the new mesh, and whose ``change`` says how
-        far it is from the old one: see :meth:`TriangleMesh.compare`.
+        far it is from the old one: see :meth:`TriangleMesh.compare`. If the old mesh has colours at
+        its vertices, ``red``, ``green`` and ``blue`` are among the values, from 0 to 1.
 
     Raises:
         The errors of :class:`TriangleMesh` and of :func:`sample`.
     """
     if not isinstance(mesh, TriangleMesh):
-        mesh = TriangleMesh(mesh, edges=edges, borders=borders, smooth=smooth)
-    elif edges != "auto" or borders is not None or smooth is not None:
-        raise TypeError("edges, borders and smooth belong to TriangleMesh: give them to it")
-    result = sample(mesh, **options)
+        mesh = TriangleMesh(mesh, edges=edges, borders=borders, smooth=smooth, lines=lines)
+    elif edges != "auto" or borders is not None or smooth is not None or len(lines):
+        raise TypeError("edges, borders, smooth and lines belong to TriangleMesh: give them to it")
+    colours = {name: _colour_of(mesh, name) for name, _ in mesh._mesh.colours()}
+    result = sample(mesh, values={**colours, **(options.pop("values", None) or {})}, **options)
     result.change = mesh.compare(result.mesh())
     return result
+
+
+def _colour_of(mesh, name):
+    """A part of the colour of a mesh as a function of place."""
+    return Field(dict(mesh._mesh.colours())[name], partial(_colour_of, mesh, name))
+
+
+def _colours(mesh):
+    """The colours of the vertices of a mesh of trimesh or PyVista, from 0 to 1; None if it has none."""
+    colours = None
+    if getattr(getattr(mesh, "visual", None), "kind", None) == "vertex":  # trimesh
+        colours = mesh.visual.vertex_colors
+    elif hasattr(mesh, "point_data"):  # PyVista, as it names those of a file
+        colours = next((mesh.point_data[name] for name in ("RGB", "RGBA") if name in mesh.point_data), None)
+    if colours is None:
+        return None
+    colours = np.asarray(colours)
+    most = 255 if colours.dtype.kind in "iu" else 1
+    return np.ascontiguousarray(colours[:, :3] / most, dtype=np.float32)
 
 
 def _arrays(mesh):

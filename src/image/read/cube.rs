@@ -3,7 +3,8 @@
 use super::header::{first_of, lines, numbers, quoted, wrong};
 use super::zip::Unpacked;
 use super::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
-use crate::image::{Image, Placement};
+use crate::image::voxels::Voxels;
+use crate::image::{AxisOrder, Image, Placement};
 use crate::slices::{MEDIUM, pause};
 use glam::{DMat3, DVec3};
 
@@ -13,18 +14,18 @@ const FORMAT: ImageFormat = ImageFormat::Cube;
 const HEADER: u64 = 1 << 20;
 const VALUE: u64 = 32;
 
-/// Line 3 has the number of atoms and the origin; lines 4 to 6 have the number of voxels along an
-/// axis and the step between them.
+/// The numbers of a header: in line 3 the number of atoms and the origin, in lines 4 to 6 the number
+/// of voxels along an axis and the step between them.
 struct Head {
     atoms: i64,
     origin: DVec3,
     size: [usize; 3],
     axes: [DVec3; 3],
-    /// Values for each voxel, if the third line says so.
+    /// Values for each voxel: the fifth number of line 3, else 1.
     values: usize,
 }
 
-/// The four or five numbers of a line.
+/// The four or five numbers of a line of the header, which is counted from 1; none if it has others.
 fn row(start: &[u8], number: usize) -> Option<Vec<f64>> {
     let (_, line, _) = lines(start).nth(number - 1)?;
     numbers(line).filter(|row| (4..=5).contains(&row.len()) && row[0].fract() == 0.0)
@@ -113,10 +114,9 @@ pub(super) async fn read(mut file: Unpacked) -> Result<Image, ImageReadError> {
             pause().await;
         }
     }
-    let [x, y, z] = size;
-    let image = Image::filtered([z, y, x], voxels).await?;
-    let placement = Placement::new(DMat3::from_cols(axes[2], axes[1], axes[0]), origin)?;
-    Ok(Image { placement, notes: notes.into(), ..image })
+    let image = Image::of(size, AxisOrder::LastFastest, Voxels::filtered(voxels)).await?;
+    let placement = Placement::new(DMat3::from_cols(axes[0], axes[1], axes[2]), origin)?;
+    Ok(Image { notes: notes.into(), ..image }.placed(placement))
 }
 
 /// The words of a text, each with the position after it.

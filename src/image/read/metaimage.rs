@@ -2,6 +2,7 @@
 
 use super::header::{first_of, lines, numbers, quoted, wrong};
 use super::{Header, ImageFormat, ImageReadError, Source};
+use crate::image::AxisOrder;
 use crate::image::voxels::{Layout, VoxelType};
 use glam::DVec3;
 
@@ -122,6 +123,7 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     Ok(Header {
         format: FORMAT,
         size,
+        order: AxisOrder::FirstFastest,
         axes: [0, 1, 2].map(|k| direction(k) * number(&spacing, k, 1.0)),
         origin: DVec3::from_array([0, 1, 2].map(|k| number(&origin, k, 0.0))),
         layout: Layout { first: skip, step: step.max(1), ..Layout::plain(voxel_type, is_big_endian) },

@@ -15,7 +15,7 @@ mod tiff;
 mod zip;
 
 use super::voxels::{Layout, VoxelType, Voxels};
-use super::{Image, ImageError, Placement};
+use super::{AxisOrder, Image, ImageError, Placement};
 use crate::slices;
 use core::fmt::{self, Display, Formatter};
 use glam::{DMat3, DVec3};
@@ -142,8 +142,9 @@ type Beside<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
 /// The contents of a header.
 struct Header {
     format: ImageFormat,
-    /// Voxels along the axes, the fastest-changing one first.
+    /// Voxels along the axes of the array, and which of them changes fastest.
     size: [usize; 3],
+    order: AxisOrder,
     /// The step from voxel to voxel along each of these axes, and the first voxel's position.
     axes: [DVec3; 3],
     origin: DVec3,
@@ -248,6 +249,7 @@ impl Image {
         let header = Header {
             format: ImageFormat::Raw,
             size,
+            order: AxisOrder::FirstFastest,
             axes: DVec3::AXES,
             origin: DVec3::ZERO,
             layout: Layout::plain(voxel_type, is_big_endian),
@@ -317,7 +319,7 @@ impl Image {
 
 /// Reads the voxels that a header describes.
 async fn image(header: Header, file: Unpacked, beside: Beside<'_>) -> Result<Image, ImageReadError> {
-    let Header { format, size, axes, origin, mut layout, is_packed, source, notes } = header;
+    let Header { format, size, order, axes, origin, mut layout, is_packed, source, notes } = header;
     let voxel = (layout.voxel_type.bytes() as u64).saturating_mul(layout.step as u64);
     let needed = size.iter().fold(voxel, |product, &n| product.saturating_mul(n as u64));
     if needed > MAX_IMAGE_BYTES {
@@ -352,9 +354,9 @@ async fn image(header: Header, file: Unpacked, beside: Beside<'_>) -> Result<Ima
     let len = (needed / voxel) as usize;
     let cut_off = ImageReadError::CutOff { format, needed, found };
     let voxels = Voxels::of_file(data, layout, len).ok_or(cut_off)?;
-    let image = Image::of(size, voxels).await?;
+    let image = Image::of(size, order, voxels).await?;
     let placement = Placement::new(DMat3::from_cols(axes[0], axes[1], axes[2]), origin)?;
-    Ok(Image { placement, notes: notes.into(), ..image })
+    Ok(Image { notes: notes.into(), ..image }.placed(placement))
 }
 
 /// First bytes of other formats, with the format's name and advice for the user.

@@ -3,6 +3,7 @@
 
 use super::header::{Fields, first_of, wrong};
 use super::{Header, ImageFormat, ImageReadError, Source};
+use crate::image::AxisOrder;
 use crate::image::voxels::{Layout, VoxelType};
 use glam::{DMat3, DQuat, DVec3};
 
@@ -148,6 +149,7 @@ pub(super) fn header(name: &str, start: &[u8]) -> Result<Header, ImageReadError>
     Ok(Header {
         format: FORMAT,
         size: size.map(|n| n as usize),
+        order: AxisOrder::FirstFastest,
         axes: [matrix.x_axis, matrix.y_axis, matrix.z_axis],
         origin,
         layout,

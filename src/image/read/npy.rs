@@ -2,6 +2,7 @@
 
 use super::header::{first_of, quoted, wrong};
 use super::{Header, ImageFormat, ImageReadError, Source};
+use crate::image::AxisOrder;
 use crate::image::voxels::{Layout, VoxelType};
 use glam::DVec3;
 
@@ -52,14 +53,11 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
             return Err(wrong(FORMAT, "shape", message));
         }
     };
-    let axes = DVec3::AXES;
-    let [x, y, z] = size;
-    // The axis that changes fastest comes first.
-    let (size, axes) = if is_fortran { (size, axes) } else { ([z, y, x], [axes[2], axes[1], axes[0]]) };
     Ok(Header {
         format: FORMAT,
         size,
-        axes,
+        order: if is_fortran { AxisOrder::FirstFastest } else { AxisOrder::LastFastest },
+        axes: DVec3::AXES,
         origin: DVec3::ZERO,
         layout: Layout { step, ..Layout::plain(voxel_type, is_big_endian) },
         is_packed: false,

@@ -2,6 +2,7 @@
 
 use super::header::{first_of, lines, numbers, quoted, type_of_name, wrong};
 use super::{Header, ImageFormat, ImageReadError, Source};
+use crate::image::AxisOrder;
 use crate::image::voxels::Layout;
 use glam::DVec3;
 
@@ -123,6 +124,7 @@ pub(super) fn header(start: &[u8]) -> Result<Header, ImageReadError> {
     Ok(Header {
         format: FORMAT,
         size: [first, second, third].map(|axis| sizes[axis]),
+        order: AxisOrder::FirstFastest,
         axes: matrix,
         origin,
         layout: Layout { first: skip, step, ..Layout::plain(voxel_type, is_big_endian) },

@@ -1,7 +1,7 @@
 //! Readers, on the small files of `fuzz/seeds/image`, which numpy and the formats' own rules made.
 
 use super::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES, RawVoxels};
-use crate::image::{Image, ImageError, VoxelType};
+use crate::image::{Image, ImageChoice, ImageError, VoxelType};
 use flate2::Compression;
 use flate2::write::{GzEncoder, ZlibEncoder};
 use glam::{DVec3, dvec3};
@@ -21,7 +21,7 @@ fn read(bytes: Vec<u8>) -> Result<Image, ImageReadError> {
 /// The value at the indices of the array that the files were made from, whatever the order of axes.
 fn value(image: &Image, place: DVec3) -> f64 {
     let index = image.placement().index(place).round();
-    image.voxel(index.to_array().map(|i| i as usize))
+    image.voxel(image.order.sorted(index.to_array().map(|i| i as usize)))
 }
 
 #[test]
@@ -68,6 +68,32 @@ fn every_format_gives_the_voxels_and_their_places() {
         let has_note = matches!(name, "nrrd-vector" | "npy-channels");
         assert_eq!(!image.notes().is_empty(), has_note, "{name}: {:?}", image.notes());
     }
+}
+
+#[test]
+fn sizes_and_spacings_of_an_array_are_along_its_axes_in_either_order() {
+    for name in ["npy-c", "npy-fortran"] {
+        let image = read(seed(name)).expect("an image").with_spacing([1.0, 2.0, 3.0]).expect("spacings");
+        assert_eq!((image.size(), image.placement().spacing()), ([4, 3, 3], [1.0, 2.0, 3.0]), "{name}");
+        for index in [DVec3::ZERO, dvec3(3.0, 2.0, 2.0), dvec3(2.0, 1.0, 1.0)] {
+            let place = index * dvec3(1.0, 2.0, 3.0);
+            assert_eq!(image.placement().point(index), place, "{name}");
+            assert_eq!(image.placement().index(place).round(), index, "{name}");
+        }
+        assert_eq!(value(&image, dvec3(2.0, 2.0, 3.0)), 100.0, "{name}");
+        // What is made of it has the same axes.
+        let field = image.surface(&ImageChoice { is_closed: true, ..ImageChoice::default() }, None);
+        let field = field.expect("a surface");
+        assert_eq!(field.image().size(), [4, 3, 3], "{name}");
+        assert_eq!(field.field().image().placement().spacing(), [1.0, 2.0, 3.0], "{name}");
+    }
+    let not_finite = [&seed("npy-c")[..seed("npy-c").len() - 16], &[255; 8], &[0; 8]].concat();
+    let error = read(not_finite).expect_err("refused");
+    let first = [3, 2, 1];
+    assert!(
+        matches!(error, ImageReadError::Image(ImageError::NotFinite { count: 1, first: f }) if f == first),
+        "{error}"
+    );
 }
 
 #[test]

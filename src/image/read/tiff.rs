@@ -5,7 +5,7 @@ use super::header::{first_of, quoted, wrong};
 use super::zip::Unpacked;
 use super::{ImageFormat, ImageReadError, MAX_IMAGE_BYTES};
 use crate::image::voxels::{Layout, VoxelType, Voxels};
-use crate::image::{Image, Placement};
+use crate::image::{AxisOrder, Image, Placement};
 use crate::slices;
 use glam::{DMat3, DVec3};
 
@@ -452,7 +452,7 @@ pub(super) async fn read(file: Unpacked) -> Result<Image, ImageReadError> {
     let found = data.len() as u64;
     let voxels = Voxels::of_file(data, layout, count);
     let voxels = voxels.ok_or(ImageReadError::CutOff { format: FORMAT, needed, found })?;
-    let image = Image::of(size, voxels).await?;
+    let image = Image::of(size, AxisOrder::FirstFastest, voxels).await?;
     let placement = Placement::new(DMat3::from_diagonal(axes), DVec3::ZERO)?;
     Ok(Image { placement, notes: notes.into(), ..image })
 }

@@ -264,7 +264,11 @@ impl<'a> Glb<'a> {
     /// The rows of the accessor that a number names, each of so many numbers.
     fn rows(&self, number: &Member, components: usize) -> Result<Rows<'a>, ReadError> {
         let accessor = number.named(self, "accessors")?;
-        let wanted = if components == 1 { "SCALAR" } else { "VEC3" };
+        let wanted = match components {
+            1 => "SCALAR",
+            3 => "VEC3",
+            _ => "VEC4",
+        };
         let kind = accessor.get("type");
         if kind.and_then(|kind| kind.value.get::<String>()).is_none_or(|kind| kind != wanted) {
             return Err(accessor.wrong(&format!("its type is not {wanted}, which {} needs", number.name)));
@@ -297,6 +301,14 @@ impl<'a> Glb<'a> {
         };
         let normalized = accessor.get("normalized").is_some_and(|is| is.value.get() == Some(&true));
         Ok(Rows { bytes, stride, count, kind, normalized })
+    }
+
+    /// The rows of an accessor of colours, with three or four numbers each.
+    fn colours(&self, number: &Member) -> Result<Rows<'a>, ReadError> {
+        let kind = number.named(self, "accessors")?.get("type");
+        let has_alpha =
+            kind.is_some_and(|kind| kind.value.get::<String>().is_some_and(|kind| kind == "VEC4"));
+        self.rows(number, if has_alpha { 4 } else { 3 })
     }
 
     /// The meshes of the scene with their transforms.
@@ -371,6 +383,11 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
     Ok(())
 }
 
+/// The sRGB value of a linear share of light (IEC 61966-2-1).
+fn srgb(light: f64) -> f64 {
+    if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 }
+}
+
 /// A primitive in its place.
 struct Part<'a> {
     glb: &'a Glb<'a>,
@@ -397,9 +414,13 @@ impl Part<'_> {
         let positions = glb.rows(&position, 3)?;
         let normal = self.attribute("NORMAL").filter(|_| has_normals);
         let normals = normal.map(|normal| glb.rows(&normal, 3)).transpose()?;
-        if normals.as_ref().is_some_and(|normals| normals.count != positions.count) {
-            let message = "it has another number of normals than of positions; export the file again";
-            return Err(primitive.wrong(message));
+        let colours = self.attribute("COLOR_0").map(|colour| glb.colours(&colour)).transpose()?;
+        for (rows, what) in [(&normals, "normals"), (&colours, "colours")] {
+            if rows.as_ref().is_some_and(|rows| rows.count != positions.count) {
+                let message =
+                    format!("it has another number of {what} than of positions; export the file again");
+                return Err(primitive.wrong(&message));
+            }
         }
         let first = u32::try_from(mesh.position.len()).map_err(|_| ReadError::Memory)?;
         // A surface that is turned inside out by a reflection has its corners the other way round.
@@ -413,6 +434,9 @@ impl Part<'_> {
                 *number = input.coordinate(*number, component)?;
             }
             mesh.add_point(numbers, has_normals)?;
+            if let Some(colours) = &colours {
+                mesh.add_colour([0, 1, 2].map(|k| srgb(colours.number(i, k))))?;
+            }
             input.end_row().await;
         }
         if *mode == POINTS {

@@ -20,6 +20,8 @@ pub struct FileMesh {
     pub position: Vec<DVec3>,
     /// Normals as in the file, of any length: one for each position, or none at all.
     pub normal: Vec<DVec3>,
+    /// Colours in sRGB, from 0 to 1: one for each position, or none at all.
+    pub colour: Vec<[f32; 3]>,
     /// Indices of the corners of all faces, face by face.
     pub corners: Vec<u32>,
     /// Index in `corners` of the end of each face.
@@ -38,6 +40,35 @@ impl FileMesh {
         push(&mut self.position, DVec3::new(x, y, z))?;
         if has_normal {
             push(&mut self.normal, DVec3::new(nx, ny, nz))?;
+        }
+        Ok(())
+    }
+
+    /// Gives the last point a colour: red, green and blue.
+    pub(super) fn add_colour(&mut self, colour: [f64; 3]) -> Result<(), ReadError> {
+        self.pad_colours(self.position.len().saturating_sub(1))?;
+        push(&mut self.colour, colour.map(|part| part as f32))
+    }
+
+    /// Pads the colours with white.
+    fn pad_colours(&mut self, count: usize) -> Result<(), ReadError> {
+        let missing = count.saturating_sub(self.colour.len());
+        self.colour.try_reserve(missing).map_err(|_| ReadError::Memory)?;
+        self.colour.extend(core::iter::repeat_n([1.0; 3], missing));
+        Ok(())
+    }
+
+    /// Makes the colours, if there are any, one for each point and from 0 to 1. In a text they may
+    /// be from 0 to 255.
+    pub(super) fn complete_colours(&mut self) -> Result<(), ReadError> {
+        if self.colour.is_empty() {
+            return Ok(());
+        }
+        self.pad_colours(self.position.len())?;
+        let largest = self.colour.as_flattened().iter().copied().fold(0.0, f32::max);
+        let most = if largest > 1.0 { 255.0 } else { 1.0 };
+        for part in self.colour.as_flattened_mut() {
+            *part = if part.is_finite() { (*part / most).clamp(0.0, 1.0) } else { 1.0 };
         }
         Ok(())
     }
@@ -63,6 +94,8 @@ impl FileMesh {
         }));
         let mut places = place.iter();
         self.normal.retain(|_| places.next() != Some(&NONE));
+        let mut places = place.iter();
+        self.colour.retain(|_| places.next() != Some(&NONE));
         self.position.retain(|p| p.is_finite());
         let (faces, corners) = (core::mem::take(&mut self.faces), core::mem::take(&mut self.corners));
         let mut from = 0;

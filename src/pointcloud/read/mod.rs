@@ -196,6 +196,7 @@ impl Reader {
             InputFormat::ThreeMf => three_mf::read(&mut input, &mut mesh).await,
             InputFormat::Xyz => xyz::read(&mut input, &mut mesh).await,
         }?;
+        mesh.complete_colours()?;
         mesh.leave_out_undefined()?;
         if mesh.position.is_empty() {
             return Err(ReadError::NoPoints { format });

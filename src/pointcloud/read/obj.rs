@@ -1,7 +1,7 @@
 //! Reader of OBJ files (Wavefront, "Object Files", appendix B1). It reads the statements `v`, `vn`
 //! and `f` and skips all others.
 
-use super::input::{COMPONENTS, Input, quoted, words};
+use super::input::{COMPONENTS, Input, number, quoted, words};
 use super::mesh::FileMesh;
 use super::{ReadError, push};
 use glam::DVec3;
@@ -24,7 +24,16 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         let statement = line.split(|&byte| byte == b'#').next().unwrap_or_default();
         let mut words = words(statement);
         match words.next() {
-            Some(b"v") => push(&mut mesh.position, input.vector(&mut words, &COMPONENTS[..3])?)?,
+            Some(b"v") => {
+                push(&mut mesh.position, input.vector(&mut words, &COMPONENTS[..3])?)?;
+                // Some programs write the colour of a vertex after its place.
+                let mut rest = words.map(number);
+                if let [Some(Some(red)), Some(Some(green)), Some(Some(blue)), None] =
+                    [(); 4].map(|()| rest.next())
+                {
+                    mesh.add_colour([red, green, blue])?;
+                }
+            }
             Some(b"vn") => push(&mut normals, input.vector(&mut words, &COMPONENTS[3..])?)?,
             Some(b"f") => {
                 has_faces = true;

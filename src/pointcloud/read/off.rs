@@ -1,7 +1,7 @@
 //! Reader of OFF files (Geomview, "OFF Files"): text with one point or one face per line.
 
 use super::ReadError;
-use super::input::{COMPONENTS, Input, quoted, words};
+use super::input::{COMPONENTS, Input, number, quoted, words};
 use super::mesh::FileMesh;
 use glam::DVec3;
 
@@ -41,7 +41,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
             input.error("the points of this OFF file are not points in space; export it with x, y and z")
         );
     }
-    let has_normals = prefix.contains(&b'N');
+    let (has_normals, has_colours) = (prefix.contains(&b'N'), prefix.contains(&b'C'));
     // The letter nearest to `OFF` is first in a line: normals in CNOFF, colours of three or four
     // numbers in NCOFF.
     let colours_first =
@@ -71,6 +71,13 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
             n = input.vector(&mut words_of_line.iter().copied().skip(before), &COMPONENTS[3..])?;
         }
         mesh.add_point([p.x, p.y, p.z, n.x, n.y, n.z], has_normals)?;
+        if has_colours {
+            let before = if has_normals && !colours_first { 6 } else { 3 };
+            let mut parts = words_of_line.iter().skip(before).map(|word| number(word));
+            if let [Some(Some(red)), Some(Some(green)), Some(Some(blue))] = [(); 3].map(|()| parts.next()) {
+                mesh.add_colour([red, green, blue])?;
+            }
+        }
         input.end_row().await;
     }
     let mut corners = Vec::new();

@@ -25,11 +25,11 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         if encoding != Encoding::Text {
             input.begin_records(&element.name);
         }
-        let has_normal = element.has_components(3..6);
+        let (has_normal, has_colour) = (element.has_components(3..6), element.has_colour());
         for _ in 0..element.count {
             let left = if are_lines { b"" } else { line };
             let mut row = PlyRow::begin(input, encoding, element, are_lines, left)?;
-            let mut values = [0.0; COMPONENTS.len()];
+            let (mut values, mut colour) = ([0.0; COMPONENTS.len()], [1.0; 3]);
             corners.clear();
             for property in &element.properties {
                 let count = match property.length {
@@ -41,6 +41,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
                         Role::Component(k) => {
                             values[k] = row.coordinate(property.scalar, COMPONENTS[k])?;
                         }
+                        Role::Colour(k) => colour[k] = row.colour(property.scalar)?,
                         Role::Corners => corners.push(row.corner(property.scalar, vertices)?),
                         Role::Unused => row.skip(property.scalar)?,
                     }
@@ -49,6 +50,9 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
             line = row.line;
             if element.is_vertex() {
                 mesh.add_point(values, has_normal)?;
+                if has_colour {
+                    mesh.add_colour(colour)?;
+                }
             }
             mesh.add_polygon(&corners)?;
             input.end_row().await;
@@ -129,6 +133,11 @@ impl<'r, 'a> PlyRow<'r, 'a> {
             Encoding::Text => self.input.coordinate_of(next, name),
             encoding => self.input.coordinate(scalar.decode(next, encoding), name),
         }
+    }
+
+    /// The next number, which is a part of a colour, from 0 to 1.
+    fn colour(&mut self, scalar: ScalarType) -> Result<f64, ReadError> {
+        Ok(self.number(scalar, "part of a colour")? / scalar.brightest())
     }
 
     /// The next number; a word that is not a number is an error that names `what` was expected.

@@ -44,6 +44,15 @@ impl ScalarType {
         Some(Self { kind, size })
     }
 
+    /// The value of a colour at its brightest.
+    pub(super) fn brightest(self) -> f64 {
+        match (self.kind, self.size) {
+            (NumberKind::Float, _) => 1.0,
+            (_, 1) => 255.0,
+            _ => 65_535.0,
+        }
+    }
+
     /// The number that bytes of this size encode, in either byte order.
     pub(super) fn decode(self, bytes: &[u8], encoding: Encoding) -> f64 {
         let mut word = [0; 8];
@@ -71,6 +80,8 @@ pub(super) enum Role {
     Unused,
     /// A component of a vertex, as index in [`COMPONENTS`].
     Component(usize),
+    /// Red, green or blue of a vertex, 0 to 2.
+    Colour(usize),
     /// A list of the corners of a face.
     Corners,
 }
@@ -111,6 +122,11 @@ impl Element {
         components.all(|component| self.has(Role::Component(component)))
     }
 
+    /// Whether the element has a colour.
+    pub(super) fn has_colour(&self) -> bool {
+        (0..3).all(|k| self.has(Role::Colour(k)))
+    }
+
     /// Whether any property is used.
     pub(super) fn is_used(&self) -> bool {
         self.properties.iter().any(|property| property.role != Role::Unused)
@@ -128,7 +144,9 @@ impl Element {
 
     fn role(&self, name: &[u8], is_list: bool) -> Role {
         if self.is_vertex() && !is_list {
-            return component(name).map_or(Role::Unused, Role::Component);
+            let colour = || [b"red".as_slice(), b"green", b"blue"].iter().position(|own| *own == name);
+            let of_colour = || colour().map_or(Role::Unused, Role::Colour);
+            return component(name).map_or_else(of_colour, Role::Component);
         }
         if self.name == "face" && is_list && matches!(name, b"vertex_indices" | b"vertex_index") {
             return Role::Corners;

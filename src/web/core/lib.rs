@@ -9,7 +9,7 @@ use marching_particles::field::formula::number;
 use marching_particles::field::model::SolvedModel;
 use marching_particles::field::rbf::RbfData;
 use marching_particles::field::{BatchField, BatchPiecewise, Field};
-use marching_particles::image::{Section, VoxelType};
+use marching_particles::image::{AxisOrder, Section, VoxelType};
 use marching_particles::particles::Particles;
 use marching_particles::run::Value;
 use marching_particles::sampler::Sampling;
@@ -66,7 +66,7 @@ pub struct Core {
     opened: Option<(String, Opened)>,
     /// The bytes of the file that is read.
     bytes: Vec<u8>,
-    /// Of so many voxels along each axis of its image, the first is kept.
+    /// Along each axis of the image in this file, one voxel in so many is kept; 1 keeps all.
     step: usize,
     /// The file that is opened.
     opening: Option<Opening>,
@@ -274,6 +274,20 @@ impl Core {
             .map_err(|error| Fault::new(FaultKind::Mesh, &error))
             .and_then(|mesh| OpenedMesh::new(&mesh));
         to_js(&mesh.map(|mesh| self.opened = Some((name, Opened::Mesh(mesh)))).err())
+    }
+
+    /// Keeps the edges of the last opened mesh along these segments sharp, six numbers each, in the
+    /// next field that is set; none keeps those that its angle tells. Does nothing for an image.
+    pub fn mark_edges(&mut self, segments: &[f64]) {
+        let segments: Vec<[DVec3; 2]> = segments
+            .as_chunks::<6>()
+            .0
+            .iter()
+            .map(|&[a, b, c, d, e, f]| [DVec3::new(a, b, c), DVec3::new(d, e, f)])
+            .collect();
+        if let Some((_, Opened::Mesh(mesh))) = &mut self.opened {
+            *mesh = mesh.clone().with_edges_along(&segments);
+        }
     }
 
     /// Forgets the last opened file. The present field keeps its own copy.
@@ -777,7 +791,7 @@ fn image_of(voxel_type: &str, size: &[u32], rows: &[f64], bytes: Vec<u8>) -> Res
     let voxel_type = VoxelType::named(voxel_type).ok_or_else(wrong)?;
     let size: [u32; 3] = size.try_into().map_err(|_| wrong())?;
     let [x, y, z] = rows.as_chunks().0 else { return Err(wrong()) };
-    Image::from_bytes(size.map(|n| n as usize), voxel_type, bytes)
+    Image::from_bytes(size.map(|n| n as usize), AxisOrder::FirstFastest, voxel_type, bytes)
         .and_then(|image| image.with_affine([*x, *y, *z]))
         .map_err(|error| Fault::new(FaultKind::Image, &error))
 }

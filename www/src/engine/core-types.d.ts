@@ -1069,6 +1069,8 @@ export type MeshInfo = {
   fan_edges: number,
   /** The repairs, in words. */
   mended: Array<string>,
+  /** Whether it has colours, which become values at the particles. */
+  has_colours: boolean,
   /** What the reader left out, in sentences. */
   notes: Array<string>,
   /** The smooth patches, if it counts as a part with sharp edges. */

@@ -6,9 +6,13 @@ use std::path::PathBuf;
 
 /// Writes an array as NumPy would, the first axis fastest.
 fn npy(name: &str, size: [usize; 3], descr: &str, voxels: &[u8]) -> PathBuf {
+    npy_in_order("True", name, size, descr, voxels)
+}
+
+fn npy_in_order(is_fortran: &str, name: &str, size: [usize; 3], descr: &str, voxels: &[u8]) -> PathBuf {
     let [x, y, z] = size;
-    let mut header =
-        format!("{{'descr': '{descr}', 'fortran_order': True, 'shape': ({x}, {y}, {z}), }}").into_bytes();
+    let header = format!("{{'descr': '{descr}', 'fortran_order': {is_fortran}, 'shape': ({x}, {y}, {z}), }}");
+    let mut header = header.into_bytes();
     header.resize(117, b' ');
     header.push(b'\n');
     let length = (header.len() as u16).to_le_bytes();
@@ -80,6 +84,37 @@ fn labels_are_listed_and_sampled() {
     assert!(text.contains("--label takes one: 0 (") && text.contains("5 ("), "{text}");
     let message = fails(2, &["sample", "--image", &path, "--label", "4"]);
     assert!(message.contains("those of the image are 0, 5"), "{message}");
+}
+
+#[test]
+fn distances_between_voxels_are_along_x_y_and_z_in_either_order_of_the_array() {
+    let size = [30, 24, 9];
+    let value = |i: usize, j: usize, k: usize| {
+        let [x, y, z] = [i as f64 - 14.2, j as f64 - 11.3, 3.0 * (k as f64 - 4.1)];
+        8.0 - (x * x + y * y + z * z).sqrt()
+    };
+    let count: usize = size.iter().product();
+    let fortran = (0..count).map(|at| value(at % 30, at / 30 % 24, at / 720));
+    let c = (0..count).map(|at| value(at / 216, at / 9 % 24, at % 9));
+    let mut middles = Vec::new();
+    for (order, voxels) in [("True", fortran.collect::<Vec<f64>>()), ("False", c.collect())] {
+        let bytes: Vec<u8> = voxels.into_iter().flat_map(f64::to_le_bytes).collect();
+        let path = npy_in_order(order, &format!("ball-{order}.npy"), size, "<f8", &bytes);
+        let (path, mesh) = (path.display().to_string(), file("spaced.stl").display().to_string());
+        let given = ["--image", &path, "--iso", "0", "--smooth", "0", "--voxel-size", "1x1x3"];
+        let run = sample(&[&given[..], &["--count", "800", "--mesh", &mesh]].concat());
+        assert_eq!(run["image"]["size"], serde_json::json!(size), "{order}");
+        assert_eq!(run["image"]["spacing"], serde_json::json!([1.0, 1.0, 3.0]), "{order}");
+        // A ball, and no ellipsoid.
+        let volume = run["mesh"]["volume"].as_f64().expect("a closed mesh");
+        let exact = 4.0 / 3.0 * std::f64::consts::PI * 512.0;
+        assert!((volume / exact - 1.0).abs() < 0.03, "{order}: {volume} {exact}");
+        middles.push(run["mesh"]["size"].clone());
+    }
+    for size in middles {
+        let lengths: Vec<f64> = serde_json::from_value(size).expect("three lengths");
+        assert!(lengths.iter().all(|length| (length - 16.0).abs() < 0.4), "{lengths:?}");
+    }
 }
 
 #[test]

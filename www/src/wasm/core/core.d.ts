@@ -160,6 +160,11 @@ export class Core {
      */
     make_opened(request: Partial<FieldRequest>, budget: number): number;
     /**
+     * Keeps the edges of the last opened mesh along these segments sharp, six numbers each, in the
+     * next field that is set; none keeps those that its angle tells. Does nothing for an image.
+     */
+    mark_edges(segments: Float64Array | number[]): void;
+    /**
      * Measures these particles, doing up to `budget` slices of the work: `Report` once complete,
      * nothing before.
      */

@@ -326,6 +326,7 @@ export function fakeCore({
     space: () => null,
     add_value: () => null,
     value_names: () => [],
+    mark_edges() {},
     added_value: () => new Float32Array(),
     plan() {},
     fraction: () => measured / slices,

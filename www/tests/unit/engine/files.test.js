@@ -123,6 +123,7 @@ describe('a file of a mesh', () => {
       border_edges: 8,
       fan_edges: 0,
       mended: ['3 vertices merged', '1 face turned'],
+      has_colours: false,
       part: { patches: 6, edges: 12, corners: 8, faded: 1, rim: null },
       scan: null,
     });
