@@ -68,7 +68,7 @@ impl TriangleMesh {
     ///
     /// [`MeshError::Colours`] unless there is one for each vertex.
     ///
-    /// [`MeshSolid`]: crate::MeshSolid
+    /// [`MeshSolid`]: crate::remesh::MeshSolid
     pub fn with_colours(self, colours: Vec<[f32; 3]>) -> Result<Self, MeshError> {
         if colours.len() != self.vertices.len() {
             return Err(MeshError::Colours { count: colours.len(), vertices: self.vertices.len() });

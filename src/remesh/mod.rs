@@ -324,6 +324,7 @@ impl MeshSolid {
         let angle = angle.unwrap_or(180.0).to_radians();
         let walled = if is_rimmed { Some(self.walled()?) } else { None };
         let solid = walled.as_ref().map_or(&self, |walled| &walled.solid);
+        let faces = walled.as_ref().map_or(faces, |walled| walled.faces);
         pause().await;
         // A border that was smoothed has no corners.
         let is_smoothed = walled.as_ref().is_some_and(|walled| walled.is_smoothed);

@@ -223,8 +223,8 @@ impl MeshSolid {
     /// within a smooth surface, are rounded nevertheless: [`MeshKind::Parts`] counts them. With
     /// [`MeshEdges::Rounded`] no others are sharp.
     ///
-    /// [`MeshKind::Parts`]: crate::MeshKind::Parts
-    /// [`MeshEdges::Rounded`]: crate::MeshEdges::Rounded
+    /// [`MeshKind::Parts`]: crate::remesh::MeshKind::Parts
+    /// [`MeshEdges::Rounded`]: crate::remesh::MeshEdges::Rounded
     #[must_use]
     pub fn with_edges_along(self, segments: &[[DVec3; 2]]) -> Self {
         let marks = segments.iter().map(|segment| segment.map(|end| end - self.origin)).collect();

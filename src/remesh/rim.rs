@@ -18,13 +18,22 @@ use std::sync::Arc;
 const DEPTH: f64 = 0.5;
 /// A border with a larger share of turns zigzags, as that of a cut scan does, and is smoothed.
 const TURNS: f64 = 0.25;
-/// Rounds in which a zigzagging border is smoothed; each halves a zigzag of single edges.
-const ROUNDS: usize = 30;
+/// Rounds in which faces that only hang on the others by one side are left out at a zigzagging
+/// border. Smoothed, they would lie in it with no area.
+const TRIMS: usize = 2;
+/// Rounds in which a zigzagging border is smoothed. Each takes away a zigzag of single edges, and
+/// nine tenths of one of twice the length.
+const ROUNDS: usize = 10;
+/// Shares of the way to the middle of its neighbours that a vertex goes, forth and back, so that
+/// curves do not shrink (G. Taubin, "A Signal Processing Approach to Fair Surface Design", 1995).
+const STEPS: [f64; 2] = [0.5, -0.53];
 
 /// A sheet with its walls.
 pub(super) struct Walled {
     /// The faces of the sheet, then two for each edge of the border.
     pub(super) solid: MeshSolid,
+    /// Number of faces of the sheet.
+    pub(super) faces: usize,
     /// Whether the border zigzagged and was smoothed.
     pub(super) is_smoothed: bool,
 }
@@ -38,10 +47,9 @@ struct Borders {
 }
 
 impl Borders {
-    fn new(solid: &MeshSolid) -> Self {
-        let (mesh, edges) = (&*solid.mesh, &*solid.edges);
+    fn new(faces: &[[u32; 3]], edges: &Edges) -> Self {
         let lone = (0..edges.len()).filter_map(|edge| match edges.sides(edge) {
-            [side] => Some(ends_of(&mesh.faces()[side.face as usize], side.side)),
+            [side] => Some(ends_of(&faces[side.face as usize], side.side)),
             _ => None,
         });
         let ends: Vec<[u32; 2]> = lone.collect();
@@ -75,15 +83,56 @@ impl Borders {
         self.around.len() >= FEWEST && turns.count() as f64 > TURNS * self.around.len() as f64
     }
 
-    fn smooth(&self, vertices: &mut [DVec3]) {
-        for _ in 0..ROUNDS {
-            let mean = |&(at, from, to): &(u32, u32, u32)| {
+    /// Smooths the border of these faces, but keeps vertices where a face would fold.
+    fn smooth(&self, vertices: &mut [DVec3], faces: &[[u32; 3]]) {
+        let before: Vec<DVec3> = self.around.iter().map(|own| vertices[own.0 as usize]).collect();
+        for share in STEPS.repeat(ROUNDS) {
+            let moved = |&(at, from, to): &(u32, u32, u32)| {
                 let [a, b, c] = [from, at, to].map(|vertex| vertices[vertex as usize]);
-                0.25 * (a + 2.0 * b + c)
+                b.lerp(0.5 * (a + c), share)
             };
-            let means: Vec<DVec3> = self.around.iter().map(mean).collect();
-            self.around.iter().zip(means).for_each(|(own, mean)| vertices[own.0 as usize] = mean);
+            let moved: Vec<DVec3> = self.around.iter().map(moved).collect();
+            self.around.iter().zip(moved).for_each(|(own, place)| vertices[own.0 as usize] = place);
         }
+        let place_of = |vertex: u32| self.around.binary_search_by_key(&vertex, |own| own.0).ok();
+        let own: Vec<&[u32; 3]> =
+            faces.iter().filter(|face| face.iter().any(|&corner| place_of(corner).is_some())).collect();
+        /// Least share of its area that a face keeps along its normal.
+        const KEPT: f64 = 0.2;
+        let across = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+        // A vertex that goes back may fold another face.
+        loop {
+            let mut is_folded = vec![false; before.len()];
+            for face in &own {
+                let place = |corner: u32| vertices[corner as usize];
+                let old = |corner: u32| place_of(corner).map_or(place(corner), |at| before[at]);
+                let (new, old) = (across(face.map(place)), across(face.map(old)));
+                if new.dot(old) < KEPT * old.length_squared() {
+                    face.iter().filter_map(|&corner| place_of(corner)).for_each(|at| is_folded[at] = true);
+                }
+            }
+            let mut is_done = true;
+            for (at, _) in is_folded.iter().enumerate().filter(|own| *own.1) {
+                let vertex = &mut vertices[self.around[at].0 as usize];
+                is_done &= *vertex == before[at];
+                *vertex = before[at];
+            }
+            if is_done {
+                return;
+            }
+        }
+    }
+}
+
+/// Leaves out the faces that have two sides on the border.
+fn trim(faces: &mut Vec<[u32; 3]>) {
+    for _ in 0..TRIMS {
+        let edges = Edges::new(faces);
+        let is_lone = |&edge: &u32| edges.sides(edge as usize).len() == 1;
+        let lone_sides = |face: u32| edges.of_face(face).iter().filter(|edge| is_lone(edge)).count();
+        let is_kept: Vec<bool> = (0..faces.len() as u32).map(|face| lone_sides(face) != 2).collect();
+        let mut kept = is_kept.iter();
+        faces.retain(|_| kept.next() == Some(&true));
     }
 }
 
@@ -97,11 +146,17 @@ impl MeshSolid {
             return Err(MeshError::OneSided);
         }
         let (mut vertices, mut faces) = (self.mesh.vertices().to_vec(), self.mesh.faces().to_vec());
-        let borders = Borders::new(self);
+        let mut borders = Borders::new(&faces, &self.edges);
         let is_smoothed = borders.zigzags(&vertices);
         if is_smoothed {
-            borders.smooth(&mut vertices);
+            trim(&mut faces);
+            if faces.is_empty() {
+                return Err(MeshError::NoArea);
+            }
+            borders = Borders::new(&faces, &Edges::new(&faces));
+            borders.smooth(&mut vertices, &faces);
         }
+        let own_faces = faces.len();
         let mut corners: Vec<u32> = borders.ends.iter().map(|ends| ends[0]).collect();
         corners.sort_unstable();
         corners.dedup();
@@ -138,7 +193,7 @@ impl MeshSolid {
         let tree = Tree::new(&mesh.all_corners());
         let mut solid = self.clone();
         (solid.mesh, solid.edges, solid.tree) = (Arc::new(mesh), Arc::new(edges), Arc::new(tree));
-        Ok(Walled { solid, is_smoothed })
+        Ok(Walled { solid, faces: own_faces, is_smoothed })
     }
 
     /// Whether two faces disagree over an edge although all were oriented: as on a Möbius strip.
@@ -150,7 +205,7 @@ impl MeshSolid {
     /// The number of closed curves that the border consists of.
     #[must_use]
     pub fn border_loops(&self) -> usize {
-        let ends = Borders::new(self).ends;
+        let ends = Borders::new(self.mesh.faces(), &self.edges).ends;
         let mut forest = Forest::new(self.mesh.vertices().len());
         ends.iter().for_each(|&[a, b]| forest.join(a, b));
         let mut roots: Vec<u32> = ends.iter().map(|&[a, _]| forest.find(a)).collect();

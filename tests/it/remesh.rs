@@ -1,7 +1,7 @@
 //! Triangle meshes, sampled anew. The oracles are exact solids and distances from all triangles.
 
 use core::f64::consts::PI;
-use glam::{DVec3, dvec3};
+use glam::{DVec2, DVec3, dvec3};
 use marching_particles::export::Vertices;
 use marching_particles::field::{Field, Frame};
 use marching_particles::remesh::{MAX_TRIANGLES, MeshEdges, MeshError, MeshField, MeshKind, MeshOptions};
@@ -756,4 +756,44 @@ fn damaged_meshes_are_sampled_or_refused_in_words() {
         }
     }
     assert!(sampled > 0);
+}
+
+#[test]
+fn edges_along_given_lines_are_kept_whatever_their_angle() {
+    // The sides of the prism meet at 15°.
+    let shape = regular(24);
+    let upright = |k: usize| [shape.0[k], shape.0[24 + k]];
+    let field = |lines: &[[DVec3; 2]], edges| {
+        let solid = solid_of(&shape).with_edges_along(lines);
+        solid.field(&MeshOptions::with_edges(edges)).expect("a field")
+    };
+    let patches = |field: &MeshField| match field.kind() {
+        MeshKind::Parts { patches, faded, .. } => (patches, faded),
+        kind => panic!("{kind:?}"),
+    };
+    assert_eq!(patches(&field(&[], MeshEdges::Auto)), (3, 0));
+    assert_eq!(patches(&field(&[upright(0)], MeshEdges::Auto)), (3, 1), "it does not divide the side");
+    let marked = field(&[upright(0), upright(9)], MeshEdges::Auto);
+    assert_eq!(patches(&marked), (4, 0));
+    let made = sample(marked, &Settings::with_count(3_000).refined()).expect("a sample");
+    check(&made, (2, 6, 12.0 * libm::sin(PI / 12.0) * 2.0), 2e-2, "marked prism");
+}
+
+/// A cap of a sphere that is cut along its triangles, as a scan is: its border zigzags.
+#[test]
+fn a_zigzagging_border_leaves_no_pieces_beside_the_surface() {
+    for (n, count) in [(24, 1_500), (40, 3_000)] {
+        let cap = terrain(n, |x, y| libm::sqrt(2.25 - x * x - y * y));
+        let shape = part_of(&cap, |p| (p.truncate() - DVec2::new(0.03, -0.05)).length() < 0.8);
+        let (field, made) = remeshed(&shape, count, "cap");
+        let MeshKind::Parts { rim: Some(rim), .. } = field.kind() else { panic!("{:?}", field.kind()) };
+        assert!(rim.is_smoothed && rim.loops == 1, "{rim:?}");
+        assert_eq!(made.mesh().topology.components.len(), 1, "{n}: {:?}", made.report().warnings);
+        assert_eq!((borders_of(&made).1, made.mesh().topology.euler()), (1, 1), "{n}");
+        let edge = 2.0 / f64::from(n);
+        for p in made.buffers(Vertices::Joined).positions {
+            assert!((p.length() - 1.5).abs() < 0.2 * edge * edge, "{n}: {p}");
+            assert!(off_shape(p, &shape) < 0.5 * edge, "{n}: {p}");
+        }
+    }
 }
