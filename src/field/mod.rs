@@ -217,6 +217,9 @@ pub struct Facts {
     /// The distance between the values that f is interpolated from, such as the voxels of an image,
     /// if it is. Finer details are unknown.
     pub resolution: Option<f64>,
+    /// Cells along the longest side of the box of the grid on which edges were found in the values
+    /// of f, if any were; of several grids the coarsest.
+    pub edge_cells: Option<u32>,
 }
 
 /// A box that contains the whole surface of a field.
@@ -235,8 +238,14 @@ pub trait Piecewise: Field + Any {
     /// Finds, in slices, cells of a box that contain all places where pieces meet at an angle on
     /// the surface: no wider than `width`, unless that would take too long; empty if none meet.
     /// Also returns the field, to evaluate from then on, in which pieces that meet smoothly on the
-    /// surface in the box are one.
-    fn pieces_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)>;
+    /// surface in the box are one. Where parts of the field are known by their values alone, edges
+    /// are searched on a grid with `cells` along the longest side of the box.
+    fn pieces_in<'a>(
+        &'a self,
+        bounds: &Bounds,
+        width: f64,
+        cells: u32,
+    ) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)>;
 
     /// This field with the pieces of another one, [found](Piecewise::pieces_in) before, if it is
     /// the same function with other parameters; otherwise with its own.

@@ -230,7 +230,12 @@ impl Field for PartsField {
 }
 
 impl Piecewise for PartsField {
-    fn pieces_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)> {
+    fn pieces_in<'a>(
+        &'a self,
+        bounds: &Bounds,
+        width: f64,
+        _: u32,
+    ) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)> {
         let bounds = *bounds;
         Box::pin(async move {
             pause().await;

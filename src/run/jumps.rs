@@ -29,6 +29,8 @@ pub(super) struct Ends {
     pub(super) at_jump: Option<DVec3>,
     /// The first one at which it does not.
     pub(super) others: Option<DVec3>,
+    /// Whether f has no value beside that one, so that the surface ends there.
+    pub(super) is_undefined: bool,
 }
 
 impl RunState<'_> {
@@ -47,23 +49,29 @@ impl RunState<'_> {
         let f = |p: DVec3| field.value(frame.place(p));
         let step = places.len().div_ceil(LOOKED_AT).max(1);
         for place in places.iter().step_by(step).map(|place| place.as_dvec3()) {
-            let kind = if jumps_near(&f, place, reach) { &mut ends.at_jump } else { &mut ends.others };
-            kind.get_or_insert(place);
+            if jumps_near(&f, place, reach) {
+                ends.at_jump.get_or_insert(place);
+            } else if ends.others.is_none() {
+                ends.others = Some(place);
+                ends.is_undefined = around(&f, place, reach).iter().any(|(_, value)| !value.is_finite());
+            }
         }
         ends
     }
 }
 
+/// The nodes of a small grid around a place, with their values.
+fn around(f: &dyn Fn(DVec3) -> f64, place: DVec3, reach: f64) -> [(DVec3, f64); SIDE * SIDE * SIDE] {
+    core::array::from_fn(|k| {
+        let [x, y, z] = [k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)].map(|step| step as f64 - 1.0);
+        let p = place + reach * DVec3::new(x, y, z);
+        (p, f(p))
+    })
+}
+
 /// Whether f jumps from one sign to the other within about `reach` of a place.
 pub(super) fn jumps_near(f: &dyn Fn(DVec3) -> f64, place: DVec3, reach: f64) -> bool {
-    let node = |k: usize| {
-        let [x, y, z] = [k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)].map(|step| step as f64 - 1.0);
-        place + reach * DVec3::new(x, y, z)
-    };
-    let ends: [(DVec3, f64); SIDE * SIDE * SIDE] = core::array::from_fn(|k| {
-        let p = node(k);
-        (p, f(p))
-    });
+    let ends = around(f, place, reach);
     (0..ends.len()).any(|k| {
         [1, SIDE, SIDE * SIDE].into_iter().any(|step| {
             let is_last = k / step % SIDE == SIDE - 1;

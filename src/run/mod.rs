@@ -18,7 +18,7 @@ mod warning;
 
 pub use measuring::Measured;
 pub use mesh::{MeshAnswer, MeshComponent};
-pub use report::{Cut, Growth, Measures, Proof, Radii, Report, Reporting};
+pub use report::{Cut, EdgeSearch, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
 pub use severity::Severity;
 pub use values::{Value, ValueError};
@@ -522,7 +522,7 @@ impl<'f, F: Field + 'f> Run<'f, F> {
     pub(crate) fn find_creases(&self) -> Work<'f, FoundCreases> {
         let (field, origin) = (shared(&self.field), self.bounds().local_origin());
         let bounds = self.bounds().relative_to(origin);
-        Box::pin(async move { sampler::find_creases(&field, origin, &bounds).await })
+        Box::pin(async move { sampler::find_creases(&field, origin, &bounds, None).await })
     }
 
     /// Sets the creases of the surface for the next start.

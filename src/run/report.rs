@@ -6,13 +6,14 @@ use super::measuring::{
 };
 use super::{Run, RunState, Warning, check, shared};
 use crate::extent::Reach;
-use crate::field::Field;
+use crate::field::{Field, edges};
 use crate::math::Forest;
 use crate::mesh::facing::Inside;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{Figures, Histogram, Places};
 use crate::sampler::{Blur, FateCounts, Sampled, Sampling, Search, StopReason};
 use crate::slices::{self, Estimated};
+use core::fmt::{self, Display, Formatter};
 use glam::Vec3;
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
@@ -148,9 +149,42 @@ pub struct Proof {
     pub creases: Option<usize>,
     /// Particles at which creases meet or end; none if the surface has no edges.
     pub corners: Option<usize>,
+    /// The search by which edges were found in the values of f; none if the field tells the pieces
+    /// that meet at its edges, or no edge was found.
+    #[cfg_attr(test, ts(as = "Option<String>"))]
+    pub edges_found: Option<EdgeSearch>,
     /// Curves of particles along which patches of the surface meet without an edge; none if there
     /// are none.
     pub seams: Option<usize>,
+}
+
+/// A search for edges in the values of f. It proves nothing: an edge of a part of the surface that
+/// is smaller than a cell of its grid may have been missed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum EdgeSearch {
+    /// The edges were searched.
+    Grid {
+        /// Cells of the grid along the longest side of the box.
+        cells: u32,
+    },
+    /// The values of f are too noisy to show any, as in single precision.
+    Noisy,
+}
+
+impl Display for EdgeSearch {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Grid { cells } => write!(f, "in the values of f to 1/{cells} of the box"),
+            Self::Noisy => f.write_str("nowhere: the values of f are too noisy"),
+        }
+    }
+}
+
+impl Serialize for EdgeSearch {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
 }
 
 /// Figures of quality of a run.
@@ -404,7 +438,7 @@ impl<'f> RunState<'f> {
         let particles = self.sampler.particles();
         let count = particles.count();
         let measured = &self.measuring.measured;
-        let proof = self.proof(measured.figures.connectivity.components);
+        let proof = self.proof(field, measured.figures.connectivity.components);
         let border = self.at_border();
         let mut warnings = self.warnings_of_run(field, &proof.sampled, self.measuring.facing.unwrap_or(0));
         warnings.extend(blur.map(|Blur { particle, distance }| Warning::Digits {
@@ -529,7 +563,21 @@ impl<'f> RunState<'f> {
         }
     }
 
-    fn proof(&self, components: usize) -> Proof {
+    /// The search for edges, also where it has found none; none if the field tells its pieces.
+    pub(super) fn edge_search(&self, field: &dyn Field) -> Option<EdgeSearch> {
+        self.edges_found(field).or_else(|| {
+            let is_noisy = edges::is_noisy(field, &self.bounds)?;
+            let cells = edges::cells_of(self.sampler.settings().survey_cells);
+            Some(if is_noisy { EdgeSearch::Noisy } else { EdgeSearch::Grid { cells } })
+        })
+    }
+
+    /// See [`Proof::edges_found`].
+    fn edges_found(&self, field: &dyn Field) -> Option<EdgeSearch> {
+        self.field.function(field).facts().edge_cells.map(|cells| EdgeSearch::Grid { cells })
+    }
+
+    fn proof(&self, field: &dyn Field, components: usize) -> Proof {
         let mut sampled = self.sampler.sampled();
         for witness in &mut sampled.without {
             witness.position = self.place(witness.position);
@@ -543,6 +591,7 @@ impl<'f> RunState<'f> {
             singular_points: self.sampler.singular_points(),
             creases: creases.as_ref().map(|creases| creases.curves),
             corners: creases.map(|creases| creases.ends),
+            edges_found: self.edges_found(field),
             seams: seams.map(|seams| seams.curves),
         }
     }

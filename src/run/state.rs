@@ -127,7 +127,8 @@ impl<'f> RunState<'f> {
             self.known == Known::Survey && self.sampler.settings().survey_cells == settings.survey_cells;
         let creases = (!is_surveyed).then(|| {
             let found = self.creases.take();
-            let search = || slices::complete(sampler::find_creases(field, origin, &bounds));
+            let search =
+                || slices::complete(sampler::find_creases(field, origin, &bounds, settings.survey_cells));
             let FoundCreases { creases, known } = found.unwrap_or_else(search);
             self.field.pieces = known;
             creases

@@ -6,9 +6,9 @@ mod missing;
 
 use super::jumps::breaks_in;
 use super::report::creases_and_seams;
-use super::{Report, RunState, Severity, check};
-use crate::field::Field;
+use super::{EdgeSearch, Report, RunState, Severity, check};
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
+use crate::field::{Field, edges};
 use crate::math::{Bounds, counted, place_text, significant};
 use crate::mesh::facing::Inside;
 use crate::mesh::triangulation::Triangulation;
@@ -211,6 +211,10 @@ pub enum Warning {
         position: [f64; 3],
         /// Radius of the run.
         length: f64,
+        /// The search for edges in the values of f, if there was one.
+        search: Option<EdgeSearch>,
+        /// Whether f has no value beside that position.
+        is_undefined: bool,
     },
     /// The surface ends where f jumps from one sign to the other.
     Jumps {
@@ -350,6 +354,8 @@ impl RunState<'_> {
         let evaluator = &mut *self.evaluator(field);
         if evaluator.bounded().is_none()
             && let Some(at) = check::wrong_gradient(evaluator, &bounds)
+            // Differences of values that are noisy show nothing.
+            && edges::is_noisy(field, &self.bounds) != Some(true)
         {
             let position = self.place(at.to_array());
             warnings.push(Warning::Gradient { position, length: self.bounds.diagonal() });
@@ -449,7 +455,9 @@ impl RunState<'_> {
         {
             let position = self.place(place.to_array());
             let (edges, points) = (opening.edges, opening.points);
-            warnings.push(Warning::Open { edges, points, position, length });
+            let search = self.edge_search(field);
+            let is_undefined = ends.is_undefined;
+            warnings.push(Warning::Open { edges, points, position, length, search, is_undefined });
         }
         // Sheets too near to be distinguished leave witnesses open, which is reported already. No
         // model from points has bounds, which the row of the report says. How components of a moved
@@ -646,13 +654,13 @@ impl fmt::Display for Warning {
             Self::WithoutParticle { components, length, is_unresolved } => {
                 without_particle(f, components, *length, *is_unresolved)
             }
-            Self::Open { edges: 0, points, position, length } => write!(
+            Self::Open { edges: 0, points, position, length, .. } => write!(
                 f,
                 "{} in no triangle: the others close the surface all the same. The first is near {}.",
                 counted(*points, "particle is", "particles are"),
                 place_text(*position, *length)
             ),
-            Self::Open { edges, points, position, length } => {
+            Self::Open { edges, points, position, length, search, is_undefined } => {
                 let found = those_that_are([
                     (*edges, counted(*edges, "open edge", "open edges")),
                     (*points, format!("{} in no triangle", counted(*points, "particle", "particles"))),
@@ -660,10 +668,25 @@ impl fmt::Display for Warning {
                 write!(
                     f,
                     "The particles leave gaps in the surface: choose a smaller radius. Their triangles have {found}, first near {}, so \
-                     that components and Euler number may be wrong. Where the surface has an edge, a tip or an end, no radius helps. \
-                     An edge that was not found in the values of a function can be stated, by its pieces or by a union of bodies.",
+                     that components and Euler number may be wrong. Where the surface has an edge, a tip or an end, no radius helps.",
                     place_text(*position, *length)
-                )
+                )?;
+                match search {
+                    _ if *is_undefined => f.write_str(
+                        " f has no value beside that place, and the surface ends where f does: give f values beyond, or a box that \
+                         leaves the end out.",
+                    ),
+                    None => Ok(()),
+                    Some(EdgeSearch::Noisy) => f.write_str(
+                        " The values of f are too noisy to show its edges: compute them in double precision, or state the edges by \
+                         the pieces of f or a union of bodies.",
+                    ),
+                    Some(search @ EdgeSearch::Grid { .. }) => write!(
+                        f,
+                        " Edges were searched {search}: a smaller box shows finer ones, and an edge can be stated, by the pieces of f \
+                         or a union of bodies."
+                    ),
+                }
             }
             Self::Jumps { position, length } => write!(
                 f,

@@ -181,8 +181,9 @@ pub struct Settings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<Radius>,
     /// Grid cells along the longest side of the box, to find a surface whose field has no
-    /// [bounds](crate::field::Bounded): a part smaller than a cell may be missed. Half as many take
-    /// a quarter of the evaluations. The default is 64.
+    /// [bounds](crate::field::Bounded), and its edges if the field does not tell its pieces: a part
+    /// smaller than a cell may be missed. Half as many take a quarter of the evaluations. The
+    /// default is 64; edges are searched with at most 256.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub survey_cells: Option<u32>,
     /// Uniform or adaptive sampling.

@@ -1,4 +1,6 @@
-//! What is known of a surface before it is sampled.
+//! The surface of a field in a box, as it is found out before particles are placed: the frame in
+//! which f is evaluated, points of the surface on a grid, its creases, singular points and tips. The
+//! sampler makes a [`Surface`] once at the start of a run; the stages of its methods read it.
 
 use super::discovery::grid::DENSE_CELLS;
 use super::discovery::search::ComponentSearch;
@@ -36,16 +38,19 @@ pub(crate) struct FoundCreases {
     pub(crate) known: Option<KnownPieces>,
 }
 
-/// Finds, in slices, the creases of the surface of a field in a box given relative to `origin`.
+/// Finds, in slices, the creases of the surface of a field in a box given relative to `origin`. In
+/// the values of f they are searched on a grid with so many `cells` along the longest side of the
+/// box, by default 64.
 pub(crate) fn find_creases<'a>(
     field: &'a dyn Field,
     origin: DVec3,
     bounds: &Bounds,
+    cells: Option<u32>,
 ) -> Work<'a, FoundCreases> {
     let bounds = *bounds;
     Box::pin(async move {
         let (outward, width) = (Frame::around(origin).outward(&bounds), Creases::width(&bounds));
-        let found = edges::known_in(field, &outward, width).await;
+        let found = edges::known_in(field, &outward, width, edges::cells_of(cells)).await;
         let Some((cells, known)) = found else { return FoundCreases::default() };
         let function = KnownPieces::of(known.as_ref(), field);
         let creases = if cells.is_empty() {

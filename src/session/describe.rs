@@ -331,6 +331,8 @@ const REPORT: &[ReportRow] = &[
         .help("Curves on which the surface has an edge, from corner to corner or closed. Particles lie on them exactly, with a normal for each side."),
     row("corners", "Corners", "Surface")
         .help("Particles at which creases meet or end."),
+    row("edges_found", "Edges found", "Surface")
+        .help("How the edges were found where the field does not tell its pieces: on a grid of values of f. Nothing is proven: edges of a part smaller than a cell of the grid may be missed. A smaller box misses less."),
     row("seams", "Seams without an edge", "Surface")
         .help("Curves along which smooth parts of the surface meet without an edge that meet at one elsewhere, as where a fillet fades out. Particles lie on them."),
 ];

@@ -102,6 +102,60 @@ fn particles_lie_on_the_edges() {
 }
 
 #[test]
+fn the_report_says_how_edges_were_found_and_more_survey_cells_find_finer_ones() {
+    let cube = |p: DVec3| block(p, DVec3::splat(0.8));
+    let found = |settings: &Settings| {
+        let sample = sample(cube, settings).expect("a cube");
+        sample.report().proof.edges_found.map(|search| search.to_string())
+    };
+    let mut settings = Settings::with_count(500).in_box(Bounds::cube(1.0));
+    assert_eq!(found(&settings).as_deref(), Some("in the values of f to 1/64 of the box"));
+    settings.survey_cells = Some(40);
+    assert_eq!(found(&settings).as_deref(), Some("in the values of f to 1/40 of the box"));
+    // Whoever tells the pieces needs no search.
+    let piece = |label: u32, p: DVec3| if label == 0 { p.length() - 1.0 } else { p.z - 0.5 };
+    let label = move |p: DVec3| u32::from(piece(1, p) > piece(0, p));
+    let told = sample(PiecewiseFn::new(label, piece), &Settings::with_count(500)).expect("a cut ball");
+    assert_eq!(told.report().proof.edges_found, None);
+    // A union is no better than its operands.
+    let both = union((cube, |p: DVec3| p.distance(DVec3::X) - 0.5));
+    let both = sample(both, &Settings::with_count(1_000).in_box(Bounds::cube(2.0))).expect("a solid");
+    assert!(both.report().proof.edges_found.is_some());
+}
+
+#[test]
+fn a_mesh_that_is_open_along_edges_says_what_to_do() {
+    let noise = |p: DVec3| libm::sin(1e7 * p.x) * libm::cos(1.3e7 * p.y) + libm::sin(1.7e7 * p.z);
+    let noisy = |p: DVec3| block(p, DVec3::splat(0.8)) + 1e-6 * noise(p);
+    let settings = Settings::with_count(2_000).in_box(Bounds::cube(1.3));
+    let sample = sample(noisy, &settings).expect("a cube");
+    let told: Vec<String> = sample.report().warnings.iter().map(ToString::to_string).collect();
+    assert!(told.iter().any(|text| text.contains("too noisy to show its edges")), "{told:?}");
+    assert!(told.iter().all(|text| !text.contains("gradient does not fit")), "{told:?}");
+    let half = |p: DVec3| if p.x > 0.2 { f64::NAN } else { block(p, DVec3::splat(0.8)) };
+    let sample = marching_particles::sample(half, &settings).expect("a part of a cube");
+    let told: Vec<String> = sample.report().warnings.iter().map(ToString::to_string).collect();
+    assert!(told.iter().any(|text| text.contains("the surface ends where f does")), "{told:?}");
+}
+
+#[test]
+fn a_particle_on_the_plane_of_a_shared_face_does_not_grow_into_the_solid() {
+    let step = |p: DVec3, y: f64, height: f64| {
+        block(p - dvec3(0.0, y, 0.5 * height - 0.5), dvec3(0.6, 0.25, 0.5 * height))
+    };
+    // Turned like this, a particle lies on the plane of a shared face to within the step of the
+    // differences.
+    let steps = |p: DVec3| {
+        let q = turned(p + dvec3(0.0, 0.0, 0.2));
+        step(q, -0.5, 0.3).min(step(q, 0.0, 0.6)).min(step(q, 0.5, 0.9))
+    };
+    let settings = Settings::with_count(8_000).in_box(Bounds::cube(1.8));
+    let sample = sample(steps, &settings).expect("three steps");
+    assert!(sample.mesh().topology.is_closed(), "{:?}", sample.report().warnings);
+    assert_eq!(sample.mesh().topology.euler(), 2);
+}
+
+#[test]
 fn smooth_functions_have_no_edges() {
     let torus = |p: DVec3| libm::hypot(p.truncate().length() - 0.7, p.z) - 0.25;
     let gyroid = |p: DVec3| {

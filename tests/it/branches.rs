@@ -20,7 +20,7 @@ fn at_work(field: &Formula) -> Box<dyn Evaluator + '_> {
 /// The field with its branches as they are in a box, and the cells of the box that may have
 /// creases.
 fn creased(field: &Formula, bounds: &Bounds) -> (Arc<dyn Piecewise>, Vec<Bounds>) {
-    let (cells, field) = complete(field.pieces_in(bounds, 0.05));
+    let (cells, field) = complete(field.pieces_in(bounds, 0.05, 64));
     (field, cells)
 }
 

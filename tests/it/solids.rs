@@ -60,7 +60,7 @@ fn a_box_closes_what_it_cuts() {
         assert_eq!(closed.value_and_gradient(p).0 <= 0.0, inside, "{p}");
     }
     is_consistent(&closed, &around, "a closed gyroid");
-    assert!(!complete(closed.pieces_in(&around, 0.05)).0.is_empty());
+    assert!(!complete(closed.pieces_in(&around, 0.05, 64)).0.is_empty());
     let mut evaluator = closed.evaluator(Frame::default());
     let listed = evaluator.labels_in(&Bounds::cube(0.5)).expect("few branches");
     assert_eq!(listed, [evaluator.label(DVec3::ZERO)]);
@@ -74,7 +74,7 @@ fn a_box_closes_what_it_cuts() {
 #[test]
 fn a_closed_sphere_has_seven_patches() {
     let dice = field("x^2 + y^2 + z^2 - 1.2").closed_by(&Bounds::cube(1.0));
-    let (cells, dice) = complete(dice.pieces_in(&Bounds::cube(1.2), 0.05));
+    let (cells, dice) = complete(dice.pieces_in(&Bounds::cube(1.2), 0.05, 64));
     assert!(!cells.is_empty());
     let mut dice = dice.evaluator(Frame::default());
     let faces = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
@@ -99,7 +99,7 @@ fn a_thickened_sphere_has_two_sheets() {
             assert!(shell.value_and_gradient(direction * a.sqrt()).0 < 0.0);
         }
     }
-    assert!(complete(shell.pieces_in(&Bounds::cube(2.0), 0.05)).0.is_empty());
+    assert!(complete(shell.pieces_in(&Bounds::cube(2.0), 0.05, 64)).0.is_empty());
     is_consistent(&shell, &Bounds::cube(1.6), "a shell");
 }
 
@@ -126,7 +126,7 @@ fn a_thickened_cube_is_a_cube_in_a_cube() {
         assert_eq!(sheet(p) <= 0.0, is_inside, "{p}");
     }
     is_consistent(&shell, &Bounds::cube(2.5), "a thickened cube");
-    assert!(!complete(shell.pieces_in(&Bounds::cube(2.5), 0.05)).0.is_empty());
+    assert!(!complete(shell.pieces_in(&Bounds::cube(2.5), 0.05, 64)).0.is_empty());
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn a_thickened_surface_is_closed_by_a_box() {
         assert!(bounds.holds(p) || value > 0.0);
     }
     is_consistent(&part, &Bounds::cube(2.2), "a gyroid to print");
-    assert!(!complete(part.pieces_in(&Bounds::cube(2.2), 0.05)).0.is_empty());
+    assert!(!complete(part.pieces_in(&Bounds::cube(2.2), 0.05, 64)).0.is_empty());
 }
 
 #[test]

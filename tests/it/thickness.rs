@@ -55,7 +55,7 @@ fn the_thickness_is_that_of_the_place() {
     // A thickness with an edge of its own.
     let step = thickened("z = 0.1 x", "max(0.1, 0.4 - abs(x))");
     is_consistent(&step, &Bounds::cube(1.0), "a plate with a rib");
-    assert!(!complete(step.pieces_in(&Bounds::cube(1.0), 0.05)).0.is_empty());
+    assert!(!complete(step.pieces_in(&Bounds::cube(1.0), 0.05, 64)).0.is_empty());
 }
 
 #[test]

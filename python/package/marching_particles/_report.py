@@ -140,6 +140,7 @@ class Report(_Calls):
     singular_points: Union[int, None]
     creases: Union[int, None]
     corners: Union[int, None]
+    edges_found: Union[str, None]
     seams: Union[int, None]
     quality: Union[Figures, None]
     quality_before: Union[Figures, None]

@@ -239,7 +239,8 @@ impl Field for Combination {
         });
         let within = within.or(domain.map(|bounds| Within { bounds, is_cut: true }));
         let resolution = facts.iter().filter_map(|facts| facts.resolution).reduce(f64::min);
-        Facts { periods: common, unused, within, domain, resolution, ..Facts::default() }
+        let edge_cells = facts.iter().filter_map(|facts| facts.edge_cells).min();
+        Facts { periods: common, unused, within, domain, resolution, edge_cells, ..Facts::default() }
     }
 
     fn calls(&self) -> Option<u64> {
@@ -260,13 +261,19 @@ impl Field for Combination {
 }
 
 impl Piecewise for Combination {
-    fn pieces_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)> {
+    fn pieces_in<'a>(
+        &'a self,
+        bounds: &Bounds,
+        width: f64,
+        cells: u32,
+    ) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)> {
         let bounds = *bounds;
         Box::pin(async move {
             let (mut found, mut own) = (Vec::new(), self.clone());
             for part in &mut own.parts {
-                let Some((cells, known)) = edges::known_in(&**part, &bounds, width).await else { continue };
-                found.extend(cells);
+                let known = edges::known_in(&**part, &bounds, width, cells).await;
+                let Some((seams, known)) = known else { continue };
+                found.extend(seams);
                 *part = edges::KnownPieces::of_shared(known.as_ref(), part);
             }
             let origin = bounds.middle();

@@ -16,6 +16,9 @@ const MOVES: u32 = 12;
 /// Two pieces whose distances from f differ by no more than this share of the size of the box count
 /// as equally near to it.
 const SAME: f64 = 3e-10;
+/// Largest distance between the unit normals of a piece and of f where f is the piece: the piece
+/// may turn by so much within a cell.
+const TURNED: f64 = 1.0;
 /// Depths within the region, in margins, that are tried in turn where the walls are not exact.
 const DEEPER: [f64; 2] = [4.0, 16.0];
 
@@ -172,7 +175,7 @@ impl EdgeTable {
         let found = Taylor { p, jet: jet(values, self.step)? };
         let normal = found.normal();
         let off = |k: u32| self.vertices[k as usize].slope(p).1.normalize_or_zero().distance(normal);
-        let is_own = |&[own, other]: &[u32; 2]| off(own) <= off(other).max(ALIKE);
+        let is_own = |&[own, other]: &[u32; 2]| off(own) <= off(other).max(ALIKE).min(TURNED);
         pairs.iter().all(is_own).then_some(found)
     }
 
@@ -300,11 +303,15 @@ impl<'a> EdgedEvaluator<'a> {
     }
 
     /// The jet of a piece at a place where the value of f is `whole`; within its region the value
-    /// alone.
-    fn piece_jet(&self, label: u32, q: DVec3, whole: f64) -> Jet {
+    /// alone. None where f is another function, although no edge is known: inside a solid, `vertex`
+    /// of the piece being the nearest one.
+    fn piece_jet(&self, (label, vertex): (u32, u32), q: DVec3, whole: f64) -> Option<Jet> {
         let step = self.table.step;
         let taylor = match self.table.plan(label, q, self.table.margin) {
-            Plan::Whole => return Jet { value: whole, ..Jet::default() },
+            Plan::Whole => {
+                let jet = Jet { value: whole, ..Jet::default() };
+                return Some(jet).filter(|_| self.table.fits(vertex, q, whole));
+            }
             Plan::Around(p, pairs) => {
                 let mut values = [0.0; STENCIL];
                 self.field.values(&stencil(p, step), &mut values);
@@ -313,22 +320,24 @@ impl<'a> EdgedEvaluator<'a> {
             }
             Plan::Vertex(vertex) => self.table.vertices[vertex as usize],
         };
-        taylor.jet(q)
+        Some(taylor.jet(q))
     }
 
     /// The label of the piece that gives f at a place: that of the piece nearest to f; of several
-    /// equally near ones, that of the nearest vertex.
+    /// equally near ones, that of the nearest vertex. It is [no label](EdgeTable::no_label) where
+    /// none of them does, as along a face inside a solid that two of its bodies share.
     fn label_at(&self, p: DVec3) -> u32 {
         let labels = self.table.labels_near(p);
-        match labels[..] {
-            [] => return 0,
-            [(label, _)] => return label,
-            _ => {}
+        // On the surface, where labels are asked for, this needs no call.
+        if let [(label, vertex)] = labels[..]
+            && self.table.fits(vertex, p, 0.0)
+        {
+            return label;
         }
         let whole = self.field.value(p);
-        let pieces: Vec<(u32, Jet)> =
-            labels.into_iter().map(|(label, _)| (label, self.piece_jet(label, p, whole))).collect();
-        let mut best = (f64::INFINITY, pieces[0].0);
+        let jet_of = |piece: (u32, u32)| Some((piece.0, self.piece_jet(piece, p, whole)?));
+        let pieces: Vec<(u32, Jet)> = labels.into_iter().filter_map(jet_of).collect();
+        let mut best = (f64::INFINITY, self.table.no_label());
         for &(label, jet) in &pieces {
             if self.table.is_in_flush(label, p, &pieces) {
                 continue;

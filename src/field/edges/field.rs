@@ -85,7 +85,9 @@ where
     }
 
     fn facts(&self) -> Facts {
-        self.field.facts()
+        let found = self.table.as_ref().map(|table| table.cells());
+        let facts = self.field.facts();
+        Facts { edge_cells: found.or(facts.edge_cells), ..facts }
     }
 
     fn calls(&self) -> Option<u64> {

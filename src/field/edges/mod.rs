@@ -39,25 +39,45 @@ use search::Search;
 use std::sync::Arc;
 use table::Seams;
 
-/// Cells along the longest side of the box: of the grid that tells whether there is an edge at all,
-/// and of the grid on which edges are searched. Fewer miss more of what is small; the calls of f
-/// grow with the square.
-const SIDES: [u32; 2] = [32, 64];
+/// Cells along the longest side of the box of the grid on which edges are searched, unless the
+/// caller says how many. Fewer miss more of what is small; the calls of f grow with the square.
+const CELLS: u32 = 64;
+/// Largest number of these cells: the arrays of the grid then take 350 MB.
+const MOST_CELLS: u32 = 256;
+/// Ratio of the cells of the grid that tells whether there is an edge at all to those.
+const FIRST: f64 = 2.0;
 
 /// Maximum number of places that are searched again on a finer grid, at some 2,000 calls of f each.
 /// It is the number of corners of 120 boxes. Of a surface with more places none is searched again.
 const MOST_CLOSE: usize = 1_000;
 
+/// The cells along the longest side of the box of the grid on which edges are searched, if the
+/// caller wants a survey with so many `cells`.
+pub(crate) fn cells_of(cells: Option<u32>) -> u32 {
+    cells.unwrap_or(CELLS).min(MOST_CELLS)
+}
+
+/// Whether the values of a field are too noisy for a search for edges; none if there is no such
+/// search, because the field is smooth or tells its pieces.
+pub(crate) fn is_noisy(field: &dyn Field, bounds: &Bounds) -> Option<bool> {
+    let is_searched = field.piecewise().is_none()
+        && !field.is_smooth()
+        && field.evaluator(Frame::for_box(bounds)).pieces().is_none();
+    is_searched.then(|| Sampled::new(field, bounds).is_none())
+}
+
 /// Finds the pieces of a field in a box, in the coordinates of the field. Returns cells from which
 /// the edges can be traced, and what the evaluators are to know, if that is more than the field
-/// itself tells; none if the surface is smooth.
+/// itself tells; none if the surface is smooth. In the values of f edges are searched on a grid
+/// with `cells` along the longest side of the box.
 pub(crate) async fn known_in(
     field: &dyn Field,
     bounds: &Bounds,
     width: f64,
+    cells: u32,
 ) -> Option<(Vec<Bounds>, Option<KnownPieces>)> {
     if let Some(own) = field.piecewise() {
-        let (cells, own) = own.pieces_in(bounds, width).await;
+        let (cells, own) = own.pieces_in(bounds, width, cells).await;
         return Some((cells, Some(KnownPieces::Own(own))));
     }
     if let Some(pieces) = field.evaluator(Frame::for_box(bounds)).pieces() {
@@ -66,15 +86,16 @@ pub(crate) async fn known_in(
     if field.is_smooth() {
         return None;
     }
-    let table = find(field, bounds).await?;
+    let table = find(field, bounds, cells).await?;
     Some((table.seams(bounds, width), Some(KnownPieces::Edges(Arc::new(table)))))
 }
 
 /// Finds the edges of the surface of a field in a box, in the coordinates of the field. Returns no
 /// table for a surface without edges.
-async fn find(field: &dyn Field, bounds: &Bounds) -> Option<EdgeTable> {
+async fn find(field: &dyn Field, bounds: &Bounds, cells: u32) -> Option<EdgeTable> {
     let sampled = Sampled::new(field, bounds)?;
-    let [mut first, mut search] = SIDES.map(|side| Search::new(&sampled, sampled.size / f64::from(side)));
+    let cell = sampled.size / f64::from(cells);
+    let [mut first, mut search] = [FIRST * cell, cell].map(|cell| Search::new(&sampled, cell));
     first.run(bounds, true).await;
     if first.sites.is_empty() {
         return None;
@@ -99,7 +120,7 @@ pub(crate) fn seams_between(
     /// Number of times that the way from one label to the other is halved.
     const HALVINGS: u32 = 6;
     let sampled = Sampled::in_box(field, bounds);
-    let grid = slices::complete(Grid::sample(&sampled, bounds, sampled.size / f64::from(SIDES[1])));
+    let grid = slices::complete(Grid::sample(&sampled, bounds, sampled.size / f64::from(CELLS)));
     let (points, of_edge) = slices::complete(grid.points(&sampled));
     let mut of_point = vec![0; points.len()];
     labels(&points, &mut of_point);
@@ -131,7 +152,7 @@ mod tests {
     use crate::slices::complete;
 
     fn table(f: impl Fn(DVec3) -> f64 + Send + Sync, half: f64) -> Option<EdgeTable> {
-        complete(find(&FnField::new(f), &Bounds::cube(half)))
+        complete(find(&FnField::new(f), &Bounds::cube(half), CELLS))
     }
 
     #[test]

@@ -113,6 +113,11 @@ impl EdgeTable {
         self.count
     }
 
+    /// Cells along the longest side of the box of the grid on which the edges were searched.
+    pub(super) fn cells(&self) -> u32 {
+        (self.size / self.cell).round() as u32
+    }
+
     /// Points of the edges.
     #[cfg(test)]
     pub(crate) fn sites(&self) -> impl Iterator<Item = DVec3> + '_ {
@@ -126,27 +131,52 @@ impl EdgeTable {
         near.filter(move |site| site.position.distance_squared(p) <= reach * reach)
     }
 
-    /// The labels around a place, each with the squared distance of its nearest vertex, the nearest
-    /// first; of a label that has none there, with that of its nearest site.
-    pub(super) fn labels_near(&self, p: DVec3) -> Vec<(u32, f64)> {
-        let mut near: BTreeMap<u32, f64> = BTreeMap::new();
+    /// The labels around a place, each with its nearest vertex, the nearest first; a label without
+    /// a vertex there has that of its nearest site.
+    pub(super) fn labels_near(&self, p: DVec3) -> Vec<(u32, u32)> {
+        // For each label the squared distance and the vertex.
+        let mut near: BTreeMap<u32, (f64, u32)> = BTreeMap::new();
         for k in self.by_cell.around(p) {
             let label = self.label[k as usize];
             if label != NONE {
                 let distance = self.vertices[k as usize].p.distance_squared(p);
-                near.entry(label).and_modify(|known| *known = known.min(distance)).or_insert(distance);
-            }
-        }
-        let mut labels: Vec<(u32, f64)> = near.into_iter().collect();
-        for site in self.sites_near(p) {
-            for side in site.sides {
-                if labels.iter().all(|&(known, _)| known != side.label) {
-                    labels.push((side.label, site.position.distance_squared(p)));
+                let nearest = near.entry(label).or_insert((distance, k));
+                if distance < nearest.0 {
+                    *nearest = (distance, k);
                 }
             }
         }
-        labels.sort_by(|a, b| a.1.total_cmp(&b.1));
-        labels
+        let mut at_sites: BTreeMap<u32, (f64, u32)> = BTreeMap::new();
+        for site in self.sites_near(p) {
+            let distance = site.position.distance_squared(p);
+            for side in site.sides.iter().filter(|side| !near.contains_key(&side.label)) {
+                let nearest = at_sites.entry(side.label).or_insert((distance, side.end));
+                if distance < nearest.0 {
+                    *nearest = (distance, side.end);
+                }
+            }
+        }
+        let mut labels: Vec<_> = near.into_iter().chain(at_sites).collect();
+        labels.sort_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
+        labels.into_iter().map(|(label, (_, vertex))| (label, vertex)).collect()
+    }
+
+    /// Whether the polynomial of a vertex allows this value of its piece at a place around it. A
+    /// piece is not known exactly between its vertices, but far more exactly than the distance.
+    pub(super) fn fits(&self, vertex: u32, p: DVec3, value: f64) -> bool {
+        /// Largest error of the polynomial, over its slope, as a share of the distance from the
+        /// vertex: the surface of another function is nearly always farther away.
+        const ERROR: f64 = 0.1;
+        let vertex = &self.vertices[vertex as usize];
+        let d = p - vertex.p;
+        let bent = 0.5 * d.dot(vertex.jet.hessian.apply(d)).abs();
+        let error = ERROR * d.length() * vertex.jet.gradient.length() + bent;
+        (vertex.slope(p).0 - value).abs() <= error
+    }
+
+    /// A number that is the label of no piece: of places on none of those that were found.
+    pub(super) fn no_label(&self) -> u32 {
+        self.count
     }
 
     /// The labels of the pieces that may have points in a box, ascending; all of them for a large

@@ -685,9 +685,7 @@ impl Field for Formula {
             flush_faces: self.flush.to_vec(),
             unused: self.written.equation.unused(),
             why_constant: first.map(|first| spelling::no_coordinate(&first.name)),
-            within: None,
-            domain: None,
-            resolution: None,
+            ..Facts::default()
         }
     }
 
@@ -697,7 +695,12 @@ impl Field for Formula {
 }
 
 impl Piecewise for Formula {
-    fn pieces_in<'a>(&'a self, bounds: &Bounds, width: f64) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)> {
+    fn pieces_in<'a>(
+        &'a self,
+        bounds: &Bounds,
+        width: f64,
+        _: u32,
+    ) -> Work<'a, (Vec<Bounds>, Arc<dyn Piecewise>)> {
         let bounds = *bounds;
         Box::pin(async move {
             let (cells, branches) = Branches::found_in(&self.compiled, &self.values, &bounds, width).await;

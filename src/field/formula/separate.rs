@@ -146,7 +146,7 @@ mod tests {
     /// has none.
     fn on_smooth(text: &str, with: impl Fn(&mut dyn Evaluator)) {
         let field = Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
-        let (cells, function) = slices::complete(field.pieces_in(&Bounds::cube(1.5), 0.04));
+        let (cells, function) = slices::complete(field.pieces_in(&Bounds::cube(1.5), 0.04, 64));
         assert!(cells.is_empty(), "{text}");
         with(&mut *function.evaluator(Frame::default()));
     }

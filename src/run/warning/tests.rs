@@ -7,6 +7,14 @@ const FIRST_SENTENCE: usize = 110;
 fn the_first_sentence_is_short_and_names_no_part_of_the_method() {
     let (position, length) = ([-1.0 / 3.0, 1.0e-4, 12.5], 0.01);
     let unproven = |doubt| Warning::Unproven { doubt, length };
+    let open = |edges, search| Warning::Open {
+        edges,
+        points: 34,
+        position,
+        length,
+        search,
+        is_undefined: edges == 7,
+    };
     let unsampled = Unsampled { position, reach: 0.1, goes_on: true };
     let without = |is_unresolved| Warning::WithoutParticle {
         components: vec![unsampled; NAMED + 1],
@@ -38,8 +46,11 @@ fn the_first_sentence_is_short_and_names_no_part_of_the_method() {
         Warning::SmallFeatures { count: 123 },
         without(true),
         without(false),
-        Warning::Open { edges: 12, points: 34, position, length },
-        Warning::Open { edges: 0, points: 34, position, length },
+        open(12, None),
+        open(7, None),
+        open(12, Some(EdgeSearch::Noisy)),
+        open(12, Some(EdgeSearch::Grid { cells: 64 })),
+        open(0, None),
         Warning::Jumps { position, length },
         Warning::MeshDiffers { components: [1, 2], euler: [2, 4] },
         Warning::MeshHoles { count: 12 },

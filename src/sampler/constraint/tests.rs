@@ -12,7 +12,8 @@ use std::sync::Arc;
 /// The creases of a formula in the box from −`half` to `half`.
 fn creases(text: &str, half: f64) -> (Arc<dyn Piecewise>, Creases) {
     let field = Formula::as_written(text, &[]).expect("a formula");
-    let FoundCreases { creases, known } = complete(find_creases(&field, DVec3::ZERO, &Bounds::cube(half)));
+    let FoundCreases { creases, known } =
+        complete(find_creases(&field, DVec3::ZERO, &Bounds::cube(half), None));
     let Some(KnownPieces::Own(own)) = known else { panic!("a formula has pieces of its own") };
     (own, creases)
 }

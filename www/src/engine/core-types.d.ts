@@ -1343,6 +1343,9 @@ export type Report = {
   creases: number | null,
   /** Particles at which creases meet or end; none if the surface has no edges. */
   corners: number | null,
+  /** The search by which edges were found in the values of f; none if the field tells the pieces
+  * that meet at its edges, or no edge was found. */
+  edges_found: string | null,
   /** Curves of particles along which patches of the surface meet without an edge; none if there
   * are none. */
   seams: number | null,
