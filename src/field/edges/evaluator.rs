@@ -175,7 +175,7 @@ impl EdgeTable {
         let found = Taylor { p, jet: jet(values, self.step)? };
         let normal = found.normal();
         let off = |k: u32| self.vertices[k as usize].slope(p).1.normalize_or_zero().distance(normal);
-        let is_own = |&[own, other]: &[u32; 2]| off(own) <= off(other).max(ALIKE).min(TURNED);
+        let is_own = |&[own, other]: &[u32; 2]| off(own) <= off(other).clamp(ALIKE, TURNED);
         pairs.iter().all(is_own).then_some(found)
     }
 
