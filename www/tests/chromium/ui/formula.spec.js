@@ -139,7 +139,10 @@ test('a formula is typed, and mended', async ({ page }) => {
     await typeFormula(page, 'donut');
     await expect(page.locator('.fault')).toContainText('Did you mean the Torus');
     await expect(page.locator('.rows .row:visible')).toHaveCount(0);
-    await page.getByRole('button', { name: 'Show the Torus', exact: true }).click();
+    await expect(page.locator('.fault').getByRole('button', { name: 'Show the Torus', exact: true })).toBeVisible();
+    const view = page.getByRole('region', { name: 'View' });
+    await expect(view.getByRole('heading', { name: /^Did you mean the Torus/ })).toBeVisible();
+    await view.getByRole('button', { name: 'Show the Torus', exact: true }).click();
     await settled(page);
     expect((await state(page)).surface).toBe('torus');
   });
