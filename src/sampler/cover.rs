@@ -1,4 +1,4 @@
-//! What a method makes of a surface.
+//! The particles on a surface, with the mesh, the counts and the progress that belong to them.
 
 use super::attempt::Attempt;
 use super::discovery::search::ComponentSearch;

@@ -184,7 +184,7 @@ fn ended(task: &mut Task, cover: &mut Cover, reason: Result<StopReason, Stopped>
 }
 
 impl Cover {
-    /// Why the run ends without a particle, if there is none.
+    /// If the fronts have placed no particle, the reason for it, with which the run ends.
     fn why_empty(&self, task: &Task) -> Option<StopReason> {
         self.particles.is_empty().then_some(match task.surface.survey.absence {
             Absence::Constant => StopReason::Constant,

@@ -25,7 +25,7 @@ pub(super) struct Stopped;
 /// What a method and its caller share.
 #[derive(Default)]
 struct Shared {
-    /// What is left of the budget of the caller's step.
+    /// Units of work that the caller's step may still do.
     left: u32,
     is_stopped: bool,
     /// The cover, on its way from one to the other.
@@ -74,8 +74,9 @@ impl Task<'_> {
         self.check()
     }
 
-    /// Does slices of work, each of which takes what it needs from the budget, until one has a
-    /// result.
+    /// Calls `slice` until it returns a result. Each call is given the rest of the budget and
+    /// subtracts the units of work that it has done. Where nothing is left, this waits for the
+    /// caller's next step.
     pub(super) async fn until<R>(
         &mut self,
         cover: &mut Cover,

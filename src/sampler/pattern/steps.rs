@@ -276,7 +276,8 @@ impl Drawing {
         self.is_full && self.wanted.is_none_or(|wanted| self.count < wanted)
     }
 
-    /// The factor by which the radii of the particles have shrunk.
+    /// The radius at which the pattern has the wanted count, over the radius at which it was begun:
+    /// below 1 if particles were put into holes that were too small for them.
     pub(in super::super) fn shrink(&self) -> f32 {
         if self.pattern == Pattern::Blue { self.taken.shrink } else { 1.0 }
     }

@@ -103,7 +103,7 @@ async fn grow_levels(task: &mut Task<'_>, cover: &mut Cover) -> Result<(), Stopp
     Ok(())
 }
 
-/// What a front grows from.
+/// Where the first particles of a front come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Origin {
     /// The creases, or a point of the survey.
