@@ -1,6 +1,7 @@
 //! The surface of a field in a box, as it is found out before particles are placed: the frame in
-//! which f is evaluated, points of the surface on a grid, its creases, singular points and tips. The
-//! sampler makes a [`Surface`] once at the start of a run; the stages of its methods read it.
+//! which f is evaluated, points of the surface on a grid, its creases, singular points and tips.
+//!
+//! The sampler makes a [`Surface`] once, at the start of a run; the stages of its methods read it.
 
 use super::discovery::grid::DENSE_CELLS;
 use super::discovery::search::ComponentSearch;
