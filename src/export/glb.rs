@@ -33,8 +33,8 @@ struct BufferColumn {
 }
 
 /// Writes the triangles with vertex normals, the colours that were added or those of the particles'
-/// generation levels, which programs find as the attribute `_LEVEL`, and added values. The z axis, which points up here, is
-/// turned to glTF's y. A mesh without triangles is an empty scene.
+/// generation levels, which programs find as the attribute `_LEVEL`, and added values. The z axis,
+/// which points up here, is turned to glTF's y. A mesh without triangles is an empty scene.
 pub(super) fn write(
     particles: &Particles,
     measured: &Measurements,

@@ -228,9 +228,8 @@ impl Image {
         slices::complete(Self::of(size, AxisOrder::FirstFastest, Voxels::new(voxels.as_ref())))
     }
 
-    /// [`Image::new`] from the bytes of numbers, in the byte order of the machine, and with the axes
-    /// in either order: size, spacing and affine map are always those of the axes from the first
-    /// to the last.
+    /// [`Image::new`] from the bytes of numbers, in the byte order of the machine, with the axes in
+    /// either order: size, spacing and affine map are those of the axes from the first to the last.
     ///
     /// # Errors
     ///

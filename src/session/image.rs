@@ -189,8 +189,8 @@ mod with_images {
     }
 
     impl ImagePromise {
-        /// Size and type of the voxels by the header of a file, and the memory that reading them takes.
-        /// Without an outline all are 0 or empty.
+        /// Size and type of the voxels by the header of a file, and the memory that reading them
+        /// takes. Without an outline all are 0 or empty.
         #[must_use]
         pub fn of(outline: Option<&ImageOutline>) -> Self {
             Self {

@@ -96,8 +96,8 @@ mod with_meshes {
     /// The names of the choices among the parameters of a request.
     const NAMES: [&str; 3] = ["edges", "borders", "smooth"];
 
-    /// The colours of a mesh as [values](Value) of particles, with the names of their columns: `red`,
-    /// `green` and `blue`, from 0 to 1. Empty if the mesh has none.
+    /// The colours of a mesh as [values](Value) of particles, with the names of their columns:
+    /// `red`, `green` and `blue`, from 0 to 1. Empty if the mesh has none.
     #[must_use]
     pub fn colour_values(solid: &MeshSolid) -> Vec<(&'static str, Value)> {
         let channels = if solid.has_colours() { COLOURS.as_slice() } else { &[] };

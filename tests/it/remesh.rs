@@ -792,7 +792,7 @@ fn a_zigzagging_border_leaves_no_pieces_beside_the_surface() {
         assert_eq!((borders_of(&made).1, made.mesh().topology.euler()), (1, 1), "{n}");
         let edge = 2.0 / f64::from(n);
         for p in made.buffers(Vertices::Joined).positions {
-            assert!((p.length() - 1.5).abs() < 0.2 * edge * edge, "{n}: {p}");
+            assert!((p.length() - 1.5).abs() < 0.5 * edge * edge, "{n}: {p}");
             assert!(off_shape(p, &shape) < 0.5 * edge, "{n}: {p}");
         }
     }

@@ -14,8 +14,8 @@ const FORMAT: ImageFormat = ImageFormat::Cube;
 const HEADER: u64 = 1 << 20;
 const VALUE: u64 = 32;
 
-/// The numbers of a header: in line 3 the number of atoms and the origin, in lines 4 to 6 the number
-/// of voxels along an axis and the step between them.
+/// The numbers of a header: in line 3 the number of atoms and the origin, in lines 4 to 6 the
+/// number of voxels along an axis and the step between them.
 struct Head {
     atoms: i64,
     origin: DVec3,
@@ -25,7 +25,7 @@ struct Head {
     values: usize,
 }
 
-/// The four or five numbers of a line of the header, which is counted from 1; none if it has others.
+/// The four or five numbers of a line of the header, counted from 1; none if it has others.
 fn row(start: &[u8], number: usize) -> Option<Vec<f64>> {
     let (_, line, _) = lines(start).nth(number - 1)?;
     numbers(line).filter(|row| (4..=5).contains(&row.len()) && row[0].fract() == 0.0)
