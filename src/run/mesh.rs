@@ -237,16 +237,17 @@ impl RunState<'_> {
     }
 
     /// Takes the topology of the sample from its mesh if the triangles of natural neighbours leave
-    /// gaps and the mesh does not: they do where the surface bends too much for its particles.
+    /// gaps and the mesh does not: they do where the surface bends too much for its particles. A
+    /// mesh that joins parts which the triangles keep apart bridges more than gaps.
     pub(super) fn take_topology(&mut self) {
         let (Some(_), Some(mesh)) = (&self.measuring.measured.opening, self.meshing.joined()) else { return };
-        if !self.is_whole(mesh) {
+        let components = self.measuring.measured.figures.connectivity.components;
+        if !self.is_whole(mesh) || mesh.topology.components.len() != components {
             return;
         }
-        let (components, euler) = (mesh.topology.components.len(), mesh.topology.euler());
+        let euler = mesh.topology.euler();
         let measured = &mut self.measuring.measured;
-        let connectivity = &mut measured.figures.connectivity;
-        (connectivity.components, connectivity.euler, measured.opening) = (components, euler, None);
+        (measured.figures.connectivity.euler, measured.opening) = (euler, None);
     }
 
     /// Whether a mesh is a manifold that is open only at the faces of the box.
