@@ -101,6 +101,13 @@ fn programs() -> Vec<(Program, &'static str)> {
             let particles = sample(sphere, &Settings::default().spaced(spacing))?;
         },
         program! { particles:
+            use marching_particles::{Formula, Pattern, Settings, sample};
+
+            let sphere = Formula::parse("x^2 + y^2 + z^2 = 1")?;
+            let particles = sample(sphere, &Settings::with_count(3_000).with_pattern(Pattern::Blue))?;
+            particles.save("stipples.ply")?;
+        },
+        program! { particles:
             use marching_particles::run::Value;
             use marching_particles::{Formula, Settings, sample};
 
