@@ -250,7 +250,7 @@ impl RunState<'_> {
         (measured.figures.connectivity.euler, measured.opening) = (euler, None);
     }
 
-    /// Whether a mesh is a manifold that is open only at the faces of the box.
+    /// Whether a mesh is a manifold of all particles that is open only at the faces of the box.
     fn is_whole(&self, mesh: &Triangulation) -> bool {
         /// Distance from a face, in radii, within which an edge is at the box: one and a half
         /// spacings.
@@ -261,7 +261,8 @@ impl RunState<'_> {
             let from_face = (p - bounds.lo()).min(bounds.hi() - p).min_element();
             from_face <= AT_BOX * f64::from(particles.radius[v as usize])
         };
-        mesh.topology.is_manifold() && mesh.topology.lone_edges.iter().all(|edge| edge.iter().all(is_at_box))
+        let is_complete = mesh.topology.is_manifold() && mesh.left_out.is_empty();
+        is_complete && mesh.topology.lone_edges.iter().all(|edge| edge.iter().all(is_at_box))
     }
 
     fn mesh(&self) -> Option<&Triangulation> {
