@@ -142,6 +142,9 @@ async function serve(ours) {
     if (!found) return true;
     sentValue = wantedValue;
     post({ type: 'value', id: held, ...found }, [found.values.buffer]);
+    // It names the columns of a file, of which the value is one now.
+    const record = ours.record();
+    if (record) post({ type: 'record', id: held, record });
     return true;
   }
   const isDrawn = mesh && held > 0 && memory.meshed !== held;

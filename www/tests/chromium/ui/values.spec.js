@@ -32,6 +32,10 @@ test('particles are coloured by a formula, and spaced by one, which links and un
       (await /** @type {any} */ (window).marchingParticles.engine.exportFile('csv')).text(),
     );
     expect(csv.split('\n')[0].split(',').at(-1)).toBe('value');
+    const json = await page.evaluate(async () =>
+      (await /** @type {any} */ (window).marchingParticles.engine.exportFile('json')).text(),
+    );
+    expect(JSON.parse(json).marching_particles.values).toEqual([{ name: 'value', formula: 'hypot(x, y)' }]);
   });
 
   await test.step('a formula spaces them, and a mistake is told', async () => {
