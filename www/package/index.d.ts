@@ -42,7 +42,7 @@ export interface Options {
    * smin, smax or abs, or with a number added: `max(model, z)` cuts it
    */
   formula?: string;
-  /** values of the names in the formula */
+  /** values of the names in the formula; others are 1, or those of the surface of the gallery */
   params?: Record<string, number>;
   /**
    * of an image: the value of the voxels on the surface; by default Otsu's, which best separates dark from bright
@@ -277,9 +277,9 @@ export interface Solid {
   readonly by?: number;
 }
 /**
- * What can be sampled: a formula such as `x^2 + y^2 + z^2 = a`; a function f(x, y, z) of one point or of many at once,
- * negative inside and NaN where undefined; the pieces of such a function; points; a three-dimensional image; a triangle
- * mesh; or a solid that is made of such fields.
+ * What can be sampled: a formula such as `x^2 + y^2 + z^2 = a`, or the name of a surface of the gallery such as
+ * `torus`; a function f(x, y, z) of one point or of many at once, negative inside and NaN where undefined; the pieces
+ * of such a function; points; a three-dimensional image; a triangle mesh; or a solid that is made of such fields.
  */
 export type Field =
   | string

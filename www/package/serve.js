@@ -80,6 +80,17 @@ const NEEDED = {
   radius_law: ({ equal }) => `without law: ${equal ? "'chord_error'" : "'max_curvature' or 'sum_of_curvatures'"}`,
 };
 
+/** Whether a text is the identifier of a surface of the gallery. @param {Core} core @param {string} [text] */
+function isOfGallery(core, text = '') {
+  if (!/^[a-z][a-z0-9-]*$/.test(text)) return false;
+  /** @type {import('../src/engine/core-types.js').Description} */
+  const { surfaces } = core.describe();
+  return surfaces.some(({ id }) => id === text);
+}
+
+/** The request for the surface of the gallery that the formula names. @param {Omit<SentField, 'solid'>} request */
+const named = ({ formula: surface, ...request }) => ({ ...request, surface });
+
 /**
  * Answers the messages of one client.
  * @param {Environment} environment
@@ -201,7 +212,7 @@ export function serve({ post, load }) {
       return core.set_function(called.call, request, called.labels);
     }
     if (given) return takenGiven(given, request, of);
-    if (!cloud) return core.set_field(request);
+    if (!cloud) return core.set_field(isOfGallery(core, request.formula) ? named(request) : request);
     await loaded('points', loadPoints);
     const fit = await fitted(cloud, (slice) => done(of, slice));
     if ('error' in fit) throw new Refusal('InputError', fit.error);
