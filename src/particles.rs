@@ -254,6 +254,24 @@ impl Particles {
         self.twins.get(i).map_or(i, |&first| first as usize)
     }
 
+    /// For each row the number of its particle: [`Particles::identity`], or as many as there are
+    /// particles before it, if the surface has not moved yet.
+    #[must_use]
+    pub fn identities(&self) -> Vec<u32> {
+        if !self.identity.is_empty() {
+            return self.identity.clone();
+        }
+        let mut numbers: Vec<u32> = Vec::with_capacity(self.len());
+        let mut next = 0;
+        for row in 0..self.len() {
+            let first = self.first_row(row);
+            let number = if first == row { next } else { numbers[first] };
+            next = next.max(number + 1);
+            numbers.push(number);
+        }
+        numbers
+    }
+
     /// For each of the first rows, the first row of the same vertex. A particle is one vertex, but
     /// at a [tip](Self::tips) each of its rows is a vertex of its own.
     pub(crate) fn joints(&self) -> Vec<u32> {

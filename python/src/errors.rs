@@ -5,7 +5,7 @@ use marching_particles::field::FieldError;
 use marching_particles::field::formula::{FormulaError, FormulaErrorKind, Thickness};
 use marching_particles::pointcloud::JobError;
 use marching_particles::run::ValueError;
-use marching_particles::sampler::SettingsError;
+use marching_particles::sampler::{FollowError, SettingsError};
 use marching_particles::session::{Condition, Fault, FaultKind, SolidSettings};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 mod python {
     use pyo3::import_exception;
 
+    import_exception!(marching_particles._errors, CannotFollow);
     import_exception!(marching_particles._errors, EmptySurface);
     import_exception!(marching_particles._errors, FieldError);
     import_exception!(marching_particles._errors, FormulaError);
@@ -97,6 +98,11 @@ pub(crate) fn of_run(error: &Error) -> PyErr {
         Error::Settings(error) => PyValueError::new_err(error.to_string()),
         _ => PyRuntimeError::new_err(error.to_string()),
     }
+}
+
+/// The exception of particles that cannot follow a surface.
+pub(crate) fn of_follow(error: &FollowError) -> PyErr {
+    python::CannotFollow::new_err(error.to_string())
 }
 
 /// The exception of a column of values.

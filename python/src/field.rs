@@ -8,9 +8,9 @@ use marching_particles::image::{AxisOrder, ImageChoice, ImageError, VoxelType};
 use marching_particles::pointcloud::job::Job;
 use marching_particles::remesh::{MeshEdges, MeshError, MeshField, MeshKind, MeshOptions};
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Bounds, Formula, Image, TriangleMesh, extent};
+use marching_particles::{Bounds, Formula, Image, TriangleMesh, extent, gallery};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -28,21 +28,30 @@ pub(crate) struct Field {
     /// The default box for sampling; without it a box is fitted.
     bounds: Option<Bounds>,
     /// The request for the formula if the field is only a formula; none for other fields.
-    formula: Option<FieldRequest>,
+    pub(crate) formula: Option<FieldRequest>,
 }
 
 #[pymethods]
 impl Field {
-    /// The field of a formula with these parameter values.
+    /// The field of a formula, or of the gallery surface with this identifier, with these parameter
+    /// values.
     #[staticmethod]
     fn formula(text: &str, parameters: Vec<(String, f64)>) -> PyResult<Self> {
-        let mut formula = Formula::parse(text).map_err(|error| errors::of_formula(&error, text))?;
+        let surface = gallery::find(text);
+        let mut formula = match surface {
+            Some(surface) => surface.field().for_sampling(),
+            None => Formula::parse(text).map_err(|error| errors::of_formula(&error, text))?,
+        };
         for (name, value) in &parameters {
             formula = formula.with(name, *value).map_err(|error| errors::of_formula(&error, text))?;
         }
-        let parameters = parameters.into_iter().collect();
-        let request = FieldRequest { formula: Some(text.to_owned()), parameters, ..FieldRequest::default() };
-        Ok(Self { formula: Some(request), ..Self::new(Arc::new(formula), None) })
+        let (given, parameters) = (Some(text.to_owned()), parameters.into_iter().collect());
+        let request = match surface {
+            Some(_) => FieldRequest { surface: given, parameters, ..FieldRequest::default() },
+            None => FieldRequest { formula: given, parameters, ..FieldRequest::default() },
+        };
+        let bounds = surface.map(|surface| surface.bounds);
+        Ok(Self { formula: Some(request), ..Self::new(Arc::new(formula), bounds) })
     }
 
     /// The field of a function from an array of points (n, 3) to a float64 array of n values, and
@@ -233,7 +242,7 @@ impl Field {
 
     /// Whether the field is only a formula.
     #[getter]
-    fn is_formula(&self) -> bool {
+    pub(crate) fn is_formula(&self) -> bool {
         self.formula.is_some()
     }
 
@@ -320,6 +329,21 @@ impl Field {
         Ok((Self::new(Arc::new(field.clone()), None), Mesh(field), known.to_string()))
     }
 
+    /// The field of the formula of a request, with other values of these parameters.
+    pub(crate) fn of_request(
+        request: Option<&FieldRequest>,
+        parameters: Vec<(String, f64)>,
+    ) -> PyResult<Self> {
+        let Some(FieldRequest { formula, surface, parameters: known, .. }) = request else {
+            let message = "params belongs to a formula: give the field to which the particles move";
+            return Err(PyTypeError::new_err(message));
+        };
+        let mut values = known.clone();
+        values.extend(parameters);
+        let text = formula.as_ref().or(surface.as_ref()).expect("a request has one of them");
+        Self::formula(text, values.into_iter().collect())
+    }
+
     /// The box of the surface, if it is known.
     fn known(&self) -> Option<Bounds> {
         let found =
@@ -353,10 +377,10 @@ impl Field {
 
     /// Gives the field to a session, in this box, else the field's default box, else a fitted one.
     pub(crate) fn take(&self, session: &mut Session, bounds: Option<Bounds>) -> PyResult<()> {
-        let bounds = bounds.or(self.bounds);
         let taken = match &self.formula {
+            // The session knows the box of a surface of the gallery.
             Some(request) => session.set_field(&FieldRequest { bounds, ..request.clone() }),
-            None => session.set_function(Arc::clone(&self.field), bounds),
+            None => session.set_function(Arc::clone(&self.field), bounds.or(self.bounds)),
         };
         taken.map(drop).map_err(|fault| PyValueError::new_err(fault.to_string()))
     }

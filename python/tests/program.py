@@ -49,7 +49,18 @@ def sampled() -> list[mp.Sample]:
         mp.sample(mp.union([ball, "x^2 + y^2 + z^2 = 2"]), spacing=ball),
         mp.sample(mp.fit_points(np.zeros((9, 3)), centres=100, beyond_points="kept")),
         mp.sample(mp.Image(np.zeros((9, 9, 9)), spacing=0.5, origin=(0, 0, 0), iso=0.5)),
-        mp.remesh("part.stl", edges=40, borders=True, smooth=1.0, count=500),
+        mp.remesh(
+            "part.stl",
+            edges=40,
+            borders=True,
+            smooth=1.0,
+            lines=[np.zeros((2, 3))],
+            count=500,
+            method="refined",
+            values={"height": "z"},
+        ),
+        mp.sample("torus").moved(params={"r": 0.3}, progress=print),
+        mp.sample(ball).moved(ball, gradient=slope),
     ]
 
 

@@ -47,6 +47,21 @@ def test_the_examples_of_the_pages_run(page, tmp_path, monkeypatch):
     assert list(tmp_path.glob("*.glb"))
 
 
+def test_the_name_of_a_gallery_surface_is_that_surface_with_its_box_and_its_parameters(tmp_path):
+    torus = mp.sample("torus", count=800)
+    assert torus.bounds == ((-1.65, -1.65, -0.55), (1.65, 1.65, 0.55))
+    x, y, z = torus.points.T
+    np.testing.assert_allclose(np.hypot(np.hypot(x, y) - 1, z), 0.4, atol=1e-4)
+    torus.save(tmp_path / "torus.ply")
+    assert b'"surface":"torus"' in (tmp_path / "torus.ply").read_bytes()[:1000]
+    thin = mp.sample("torus", params={"r": 0.2}, bounds=BOX, count=500)
+    assert thin.bounds == BOX and abs(thin.points[:, 2]).max() < 0.2001
+    with pytest.raises(mp.FormulaError, match="no parameter `q`"):
+        mp.sample("torus", params={"q": 1})
+    # As an operand it brings its box.
+    assert mp.union("torus", "ellipsoid").bounds[0] == (-1.65, -1.65, -0.85)
+
+
 def test_a_formula_gives_particles_on_its_surface_in_arrays_of_the_promised_types():
     sample = mp.sample("x^2 + y^2 + z^2 = a", params={"a": 4}, count=1000, seed=3)
     n = len(sample)

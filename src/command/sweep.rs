@@ -138,18 +138,7 @@ impl Counted {
 
     /// Numbers the particles of a frame so that identities are unique across all runs.
     fn number(&mut self, particles: &mut Particles) {
-        if particles.identity.is_empty() {
-            let mut numbers: Vec<u32> = Vec::with_capacity(particles.len());
-            let mut next = 0;
-            for row in 0..particles.len() {
-                // A particle on an edge has a row for each patch.
-                let first = particles.first_row(row);
-                let number = if first == row { next } else { numbers[first] };
-                next = next.max(number + 1);
-                numbers.push(number);
-            }
-            particles.identity = numbers;
-        }
+        particles.identity = particles.identities();
         for number in &mut particles.identity {
             *number += self.before;
             self.next = self.next.max(*number + 1);

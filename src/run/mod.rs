@@ -395,6 +395,11 @@ impl<'f, F: Field + 'f> Run<'f, F> {
         Sample::new(self.state, report)
     }
 
+    /// A copy of the particles of a run that has ended, with this report on them.
+    pub(crate) fn sampled(&self, report: Report) -> Sample {
+        Sample::copied(&self.state, report)
+    }
+
     /// The particles so far. While a generation level is under way, the columns may hold
     /// provisional rows beyond [`Run::rows`].
     #[must_use]

@@ -84,6 +84,20 @@ impl Sample {
         }
     }
 
+    /// The sample of a run that goes on.
+    pub(super) fn copied(run: &RunState<'_>, report: Report) -> Self {
+        Self {
+            bounds: run.bounds,
+            known: run.sampler.triangles().to_vec(),
+            particles: run.sampler.particles().clone(),
+            measured: run.measuring.measured.clone(),
+            sheets: run.measuring.sheets.clone(),
+            report,
+            record: RecordText::default(),
+            mesh: run.meshing.joined().cloned().map_or_else(OnceLock::new, OnceLock::from),
+        }
+    }
+
     /// The particles, as columns.
     #[must_use]
     pub fn particles(&self) -> &Particles {

@@ -666,8 +666,32 @@ impl Session {
     pub fn finish<E: From<Error>>(
         mut self,
         measured: Measured,
-        mut tell: impl FnMut(f64) -> Result<(), E>,
+        tell: impl FnMut(f64) -> Result<(), E>,
     ) -> Result<Sample, E> {
+        let report = self.reported(measured, tell)?;
+        Ok(self.run.into_sample(report))
+    }
+
+    /// [`Session::finish`] for a session that goes on, and whose particles may follow another
+    /// surface: the sample has copies of them.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Session::finish`].
+    pub fn sample<E: From<Error>>(
+        &mut self,
+        measured: Measured,
+        tell: impl FnMut(f64) -> Result<(), E>,
+    ) -> Result<Sample, E> {
+        let report = self.reported(measured, tell)?;
+        Ok(self.run.sampled(report))
+    }
+
+    fn reported<E: From<Error>>(
+        &mut self,
+        measured: Measured,
+        mut tell: impl FnMut(f64) -> Result<(), E>,
+    ) -> Result<Report, E> {
         /// Slices between two calls, some 6 ms.
         const SLICES: u32 = 256;
         self.run.check_not_empty()?;
@@ -679,8 +703,7 @@ impl Session {
             }
         };
         drop(reporting);
-        let report = self.completed(report);
-        Ok(self.run.into_sample(report))
+        Ok(self.completed(report))
     }
 }
 

@@ -7,7 +7,7 @@
 """
 
 from ._core import __version__
-from ._errors import EmptySurface, FieldError, FormulaError
+from ._errors import CannotFollow, EmptySurface, FieldError, FormulaError
 from ._fields import (
     Field,
     Model,
@@ -26,6 +26,7 @@ from ._report import MeshChange, ModelReport, Report
 from ._sample import Mesh, Sample, SampleWarning, sample
 
 __all__ = [
+    "CannotFollow",
     "EmptySurface",
     "Field",
     "FieldError",

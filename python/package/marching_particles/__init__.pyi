@@ -22,6 +22,7 @@ class FormulaError(ValueError):
     choices: list[str]
 
 class FieldError(ValueError): ...
+class CannotFollow(ValueError): ...
 class EmptySurface(ValueError): ...
 
 class SampleWarning(NamedTuple):
@@ -105,7 +106,28 @@ def remesh(
     borders: Union[bool, None] = None,
     smooth: Union[float, None] = None,
     lines: Iterable[npt.ArrayLike] = (),
-    **options: Any,
+    count: Union[SupportsIndex, None] = None,
+    spacing: Union[SupportsFloat, str, _Function, Field, None] = None,
+    radius: Union[_Size, None] = None,
+    bounds: Union[Sequence[Sequence[float]], npt.NDArray[Any], None] = None,
+    adaptive: bool = False,
+    law: Union[Literal["chord_error", "max_curvature", "sum_of_curvatures"], None] = None,
+    chord_error: Union[_Size, None] = None,
+    curvature_scale: Union[SupportsFloat, None] = None,
+    radius_min: Union[_Size, None] = None,
+    radius_max: Union[_Size, None] = None,
+    grading: Union[SupportsFloat, None] = None,
+    method: Literal["front", "refined"] = "front",
+    pattern: Union[Literal["hexagonal", "blue", "random"], None] = None,
+    exactly: bool = False,
+    relax: Union[SupportsIndex, None] = None,
+    match_tolerance: Union[SupportsFloat, None] = None,
+    gaps: Union[Literal["fill", "leave"], None] = None,
+    seed: SupportsIndex = 0,
+    max_particles: Union[SupportsIndex, None] = None,
+    values: Union[Mapping[str, Union[str, _Function, Field]], None] = None,
+    measure: bool = True,
+    progress: Union[Callable[[float], object], None] = None,
 ) -> Sample: ...
 
 class Sample:
@@ -118,6 +140,8 @@ class Sample:
     def radii(self) -> npt.NDArray[np.float32]: ...
     @property
     def levels(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def identities(self) -> npt.NDArray[np.int32]: ...
     @property
     def values(self) -> dict[str, npt.NDArray[np.float32]]: ...
     @property
@@ -133,6 +157,14 @@ class Sample:
     @property
     def change(self) -> Union[MeshChange, None]: ...
     def mesh(self) -> Mesh: ...
+    def moved(
+        self,
+        field: Union[_Surface, None] = None,
+        *,
+        params: Union[Mapping[str, float], None] = None,
+        gradient: Union[_Function, None] = None,
+        progress: Union[Callable[[float], object], None] = None,
+    ) -> Sample: ...
     def _repr_png_(self) -> bytes: ...
     def save(self, path: Union[str, os.PathLike[str]], *, mesh: bool = False) -> None: ...
     # The libraries of these are optional, and some have no types.

@@ -39,5 +39,10 @@ class FieldError(ValueError):
     """A function that is sampled returned something else than numbers of the right shape."""
 
 
+class CannotFollow(ValueError):
+    """The particles of a sample cannot follow its surface to another one: it has moved too far, or
+    has sharp edges. The sample stays as it is."""
+
+
 class EmptySurface(ValueError):
     """No particle could be placed: f has no zero in the box, or none was found."""

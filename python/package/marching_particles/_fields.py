@@ -33,6 +33,11 @@ def numbers(name, value, shape, what):
     return array
 
 
+def corners(lowest, highest):
+    """The corners of a box as tuples."""
+    return tuple(lowest), tuple(highest)
+
+
 class Field:
     """A field that can be sampled, or combined with another one: from :func:`field`,
     :func:`union` and the like.
@@ -50,7 +55,7 @@ class Field:
         self._field = field
         # What makes the field again.
         self._made = made
-        self.bounds = field.bounds
+        self.bounds = None if field.bounds is None else corners(*field.bounds)
 
     def __reduce__(self):
         return self._made, ()
@@ -239,8 +244,10 @@ def field(field, *, params=None, gradient=None):
     """A field with its parameters or its gradient, to be combined with another one.
 
     Args:
-        field: A formula, a function or a :class:`Model`, as :func:`sample` takes it.
-        params: Values of the parameters of a formula, by name; others are 1.
+        field: A formula, the name of a surface of the gallery, a function or a :class:`Model`, as
+            :func:`sample` takes it.
+        params: Values of the parameters of a formula, by name; others are 1, or those of the
+            surface of the gallery.
         gradient: The gradient of a function, as :func:`sample` takes it.
 
     Returns:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import _core
-from ._fields import Field, _parameters, field_of, numbers
+from ._fields import Field, _parameters, corners, field_of, numbers
 from ._options import settings_of
 from ._picture import png
 
@@ -56,6 +56,7 @@ _KEPT = (
     "normals",
     "radii",
     "levels",
+    "identities",
     "values",
     "faces",
     "report",
@@ -83,7 +84,7 @@ class Sample:
     def __init__(self, make, progress):
         # What samples the field; of a sample that was unpickled as bytes, or why it is not known.
         self._make = make
-        self._core = make(progress=progress)
+        self._core = make(progress=_checked_progress(progress))
         # The mesh of one that was unpickled.
         self._mesh = None
 
@@ -117,13 +118,13 @@ class Sample:
         other.__dict__.update(own, **{name: copied(value) for name, value in others.items()})
         return other
 
-    def _sampled(self):
-        """The core's sample, which one that was unpickled makes anew."""
+    def _sampled(self, what):
+        """The core's sample, which one that was unpickled makes anew, to be ``what``."""
         if self._core is None:
             if isinstance(self._make, str):
                 raise TypeError(
-                    "this sample was pickled without its field, so that it cannot be saved: "
-                    f"{self._make}. Save it before it is pickled"
+                    f"this sample was pickled without its field, so that it cannot be {what}: "
+                    f"{self._make}. {'Save' if what == 'saved' else 'Move'} it before it is pickled"
                 )
             self._core = pickle.loads(self._make)()
         return self._core
@@ -154,6 +155,12 @@ class Sample:
     def levels(self):
         """Generation levels, array (n,), int32: 0 for the first particle of a front."""
         return self._core.levels()
+
+    @cached_property
+    def identities(self):
+        """The number of each particle, array (n,), int32. It keeps its number in all samples that
+        :meth:`moved` makes, of which those that are born later have larger ones."""
+        return self._core.identities()
 
     @cached_property
     def values(self):
@@ -187,7 +194,57 @@ class Sample:
     @cached_property
     def bounds(self):
         """The box that was sampled, ``((x0, y0, z0), (x1, y1, z1))``."""
-        return self._core.bounds()
+        return corners(*self._core.bounds())
+
+    def moved(self, field=None, *, params=None, gradient=None, progress=None):
+        """The particles after they have followed their surface to another one, which has moved only
+        a little: a frame of a motion.
+
+        They move to it and keep their numbers, :attr:`identities`; where it grows or shrinks, some
+        are born or die. They leave this sample, whose arrays stay, and only the new one can be moved
+        on. The box grows with a formula whose ``params`` change; else it stays. The same sequence of
+        surfaces gives the same particles. Files of a sample that has moved do not say how it was
+        made.
+
+        >>> import marching_particles as mp
+        >>> ball = mp.sample("x^2 + y^2 + z^2 = a", params={"a": 1}, count=500)
+        >>> for a in (1.02, 1.04):
+        ...     ball = ball.moved(params={"a": a})
+        >>> bool(abs((ball.points**2).sum(axis=1) - 1.04).max() < 1e-4)
+        True
+
+        Args:
+            field: The other field, as :func:`sample` takes it; without it the formula of this
+                sample, with other ``params``.
+            params: Values of the parameters of the formula, by name. Without ``field`` others keep
+                theirs.
+            gradient: The gradient of a function ``field``, as :func:`sample` takes it.
+            progress: A function that is called with the share of the work done, 0 to 1.
+
+        Returns:
+            A :class:`Sample`, with the other options of this one.
+
+        Raises:
+            CannotFollow: If the surface has moved too far, or has sharp edges, or the particles are
+                blue noise or random: this sample is then as before. Take smaller steps, or sample
+                the other surface.
+            ValueError: If the particles of this sample have moved to another one.
+            FormulaError: If the formula cannot be read, or has no such parameter.
+            TypeError: If an argument is of a wrong type.
+        """
+        if field is not None:
+            core_field, values = field_of(field, params, gradient), []
+        elif gradient is not None:
+            raise TypeError("gradient belongs to a function: give it with its field")
+        elif params is None:
+            raise TypeError("give the field to which the particles move, or other params")
+        else:
+            core_field, values = None, _parameters(params)
+        other = Sample.__new__(Sample)
+        other._core = self._sampled("moved").moved(core_field, values, _checked_progress(progress))
+        other._make = "its particles have come from other surfaces"
+        other._mesh = None
+        return other
 
     def mesh(self):
         """The :class:`Mesh` with one vertex for each particle."""
@@ -208,7 +265,7 @@ class Sample:
             ValueError: If the extension is none of these.
             OSError: If the file cannot be written.
         """
-        self._sampled().save(os.fspath(path), bool(mesh))
+        self._sampled("saved").save(os.fspath(path), bool(mesh))
 
     def to_trimesh(self):
         """The mesh as a ``trimesh.Trimesh``, with vertex normals."""
@@ -242,6 +299,12 @@ class Sample:
         return meshio.Mesh(
             mesh.points, [("triangle", mesh.faces)], point_data={"normals": mesh.normals, **columns}
         )
+
+
+def _checked_progress(progress):
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress must be a function, and not {type(progress).__name__}")
+    return progress
 
 
 def sample(
@@ -284,7 +347,9 @@ def sample(
         field: A formula such as ``"x^2 + y^2 + z^2 = a"``; a function of a float64 array (n, 3) of
             points that returns n values, NaN where it has none; a :class:`Model` from
             :func:`fit_points`; or a :class:`Field` from :func:`union` and the like. f < 0 inside.
-            What a function raises comes through unchanged.
+            What a function raises comes through unchanged. A text such as ``"torus"`` that is the
+            name of a surface of the gallery, which ``marching-particles surfaces`` lists, is that
+            surface, with its box and its parameters.
         count: Number of particles, met to within 3 %; 1 to 4,000,000.
         spacing: Distance between neighbours, twice the radius: a length; a share of the diagonal of
             the box such as ``"1%"``; a formula of x, y, z and ``params`` such as
@@ -296,7 +361,8 @@ def sample(
         bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a model has its own, and
             another box is fitted to the surface; of functions and what is made of them only by
             their signs on grids, so give it where it is known.
-        params: Values of the parameters of a formula, by name; others are 1.
+        params: Values of the parameters of a formula, by name; others are 1, or those of the
+            surface of the gallery.
         gradient: A function of the points that returns the gradients of the function ``field``, (n,
             3). Without it they are found by differences, with several times as many calls.
         adaptive: Whether the radius follows the curvature. The size is then that of ``count``, or
@@ -377,8 +443,6 @@ def sample(
             "max_particles": max_particles,
         }
     )
-    if progress is not None and not callable(progress):
-        raise TypeError(f"progress must be a function, and not {type(progress).__name__}")
     if bounds is not None:
         what = "the lower and the upper corner of a box, ((x0, y0, z0), (x1, y1, z1))"
         bounds = numbers("bounds", bounds, (2, 3), what)
