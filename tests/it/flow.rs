@@ -9,7 +9,7 @@ use marching_particles::quality::figures::Coverage;
 use marching_particles::run::{Cut, Measured};
 use marching_particles::sampler::{FollowError, Phase, SizeMode};
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Method, Run, Sampling, Settings, Warning};
+use marching_particles::{Method, Run, Sampling, Settings, Warning, sample};
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
 const ELLIPSOID: &str = "x^2/q^2+y^2/0.49+z^2/0.25-1";
@@ -419,4 +419,41 @@ fn without_births_and_deaths_the_same_particles_drift_apart_and_keep_more_of_the
         closed.order.six_neighbours,
         open.order.six_neighbours
     );
+}
+
+#[test]
+fn a_session_gives_a_sample_and_goes_on() {
+    let settings = Settings::with_count(500);
+    let ball = "x^2 + y^2 + z^2 = a";
+    let mut session = Session::without_surface();
+    session
+        .set_field(&FieldRequest { formula: Some(ball.into()), ..FieldRequest::default() })
+        .expect("a ball");
+    while session.fit(&|_| settings, false, u32::MAX).is_none() {}
+    session.start(&settings).expect("a run");
+    while session.run.step(u32::MAX).stop_reason.is_none() {}
+    let sampled = |session: &mut Session| {
+        session.sample(Measured::Particles, |_| Ok::<(), marching_particles::Error>(())).expect("a sample")
+    };
+    let first = sampled(&mut session);
+    let direct = sample(Formula::parse(ball).expect("a formula"), &settings).expect("a ball");
+    assert_eq!(first.particles().digest(), direct.particles().digest());
+    assert_eq!(first.mesh(), direct.mesh());
+    assert!(first.particles().identity.is_empty());
+    let larger = FieldRequest { parameters: [("a".to_owned(), 1.02)].into(), ..FieldRequest::default() };
+    session.set_field(&larger).expect("a larger ball");
+    while session.fit(&|_| settings, true, u32::MAX).is_none() {}
+    session.follow(&settings, false).expect("a near surface");
+    while session.run.step(u32::MAX).stop_reason.is_none() {}
+    let moved = sampled(&mut session);
+    let most = moved.particles().len();
+    let kept = moved
+        .particles()
+        .identities()
+        .into_iter()
+        .filter(|number| first.particles().identities().contains(number));
+    assert!(kept.count() * 100 > 95 * most);
+    assert!((0..most).all(|i| (moved.particles().place(i).length_squared() - 1.02).abs() < 1e-4));
+    // The first sample has its own copies.
+    assert_eq!(first.particles().digest(), direct.particles().digest());
 }

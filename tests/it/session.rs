@@ -5,9 +5,9 @@ use marching_particles::field::formula::Parameter;
 use marching_particles::glam::DVec3;
 use marching_particles::math::Bounds;
 use marching_particles::run::Measured;
+use marching_particles::sample;
 use marching_particles::sampler::{GapPolicy, Method, Phase, Settings, SizeMode, StopReason};
 use marching_particles::session::{FaultKind, FieldRequest, Session, describe};
-use marching_particles::{Formula, sample};
 use std::sync::Arc;
 
 fn request(text: &str) -> FieldRequest {
@@ -781,40 +781,6 @@ fn a_function_gives_the_particles_that_sampling_it_gives() {
     session.set_field(&request(r#"{"formula":"x^2+y^2+z^2=1"}"#)).expect("a formula in its place");
     run(&mut session, &settings, 50);
     assert!(session.record(None).is_some());
-}
-
-#[test]
-fn a_session_gives_a_sample_and_goes_on() {
-    let settings = Settings::with_count(500);
-    let ball = "x^2 + y^2 + z^2 = a";
-    let mut session = Session::without_surface();
-    session
-        .set_field(&FieldRequest { formula: Some(ball.into()), ..FieldRequest::default() })
-        .expect("a ball");
-    run(&mut session, &settings, 50);
-    let sampled = |session: &mut Session| {
-        session.sample(Measured::Particles, |_| Ok::<(), marching_particles::Error>(())).expect("a sample")
-    };
-    let first = sampled(&mut session);
-    let direct = sample(Formula::parse(ball).expect("a formula"), &settings).expect("a ball");
-    assert_eq!(first.particles().digest(), direct.particles().digest());
-    assert_eq!(first.mesh(), direct.mesh());
-    assert!(first.particles().identity.is_empty());
-    session.set_field(&request(r#"{"parameters":{"a":1.02}}"#)).expect("a larger ball");
-    while session.fit(&|_| settings, true, u32::MAX).is_none() {}
-    session.follow(&settings, false).expect("a near surface");
-    while session.run.step(u32::MAX).stop_reason.is_none() {}
-    let moved = sampled(&mut session);
-    let most = moved.particles().len();
-    let kept = moved
-        .particles()
-        .identities()
-        .into_iter()
-        .filter(|number| first.particles().identities().contains(number));
-    assert!(kept.count() * 100 > 95 * most);
-    assert!((0..most).all(|i| (moved.particles().place(i).length_squared() - 1.02).abs() < 1e-4));
-    // The first sample has its own copies.
-    assert_eq!(first.particles().digest(), direct.particles().digest());
 }
 
 #[test]

@@ -42,20 +42,6 @@ test('gaps that the mesh closes are none', async () => {
   sample.dispose();
 });
 
-test('the name of a gallery surface is that surface with its box and its parameters', async () => {
-  const torus = await made.sample('torus', { count: 800 });
-  expect(torus.bounds).toEqual({ min: [-1.65, -1.65, -0.55], max: [1.65, 1.65, 0.55] });
-  expect(torus.params).toEqual({ R: 1, r: 0.4 });
-  expect(new TextDecoder('latin1').decode(await torus.toFile('ply'))).toContain('"surface":"torus"');
-  const thin = await torus.moved({ r: 0.39 });
-  expect(Math.max(...thin.points.filter((_, i) => i % 3 === 2))).toBeCloseTo(0.39, 2);
-  thin.dispose();
-  await expect(made.sample('torus', { params: { q: 1 } })).rejects.toMatchObject({ name: 'InputError' });
-  const solid = await made.sample(made.union('torus', 'x^2 + y^2 + z^2 = 0.1'), { count: 500 });
-  expect(solid.report).toMatchObject({ components: 2 });
-  solid.dispose();
-});
-
 test('a file of particles and a file of the mesh', async () => {
   const ball = await made.sample(SPHERE, { count: 300, params: { a: 1 } });
   const text = async (/** @type {Promise<Uint8Array>} */ file) => new TextDecoder('latin1').decode(await file);
