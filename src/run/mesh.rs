@@ -5,7 +5,7 @@ use super::{Run, RunState};
 use crate::export::{File, FileContent, MeshFile};
 use crate::field::Field;
 use crate::field::crossing::is_passed;
-use crate::math::{Bounds, sort_few};
+use crate::math::{Bounds, Forest, sort_few};
 use crate::mesh::bodies::{Body, Split};
 use crate::mesh::facing::Inside;
 use crate::mesh::stars::Sheets;
@@ -238,16 +238,32 @@ impl RunState<'_> {
 
     /// Takes the topology of the sample from its mesh if the triangles of natural neighbours leave
     /// gaps and the mesh does not: they do where the surface bends too much for its particles. A
-    /// mesh that joins parts which the triangles keep apart bridges more than gaps.
+    /// mesh that joins what neither triangles nor a front connect bridges more than gaps.
     pub(super) fn take_topology(&mut self) {
         let (Some(_), Some(mesh)) = (&self.measuring.measured.opening, self.meshing.joined()) else { return };
-        let components = self.measuring.measured.figures.connectivity.components;
+        let components = self.connected();
         if !self.is_whole(mesh) || mesh.topology.components.len() != components {
             return;
         }
         let euler = mesh.topology.euler();
         let measured = &mut self.measuring.measured;
-        (measured.figures.connectivity.euler, measured.opening) = (euler, None);
+        let connectivity = &mut measured.figures.connectivity;
+        (connectivity.components, connectivity.euler, measured.opening) = (components, euler, None);
+    }
+
+    /// Number of components of the particles if those of one front are on one component, as its
+    /// children are on the sheet of their parents.
+    fn connected(&self) -> usize {
+        let measured = &self.measuring.measured;
+        let count = measured.figures.connectivity.components;
+        let mut sets = Forest::new(count);
+        for (&own, &seed) in measured.component.iter().zip(&self.particles().fronts()) {
+            let of_seed = measured.component[seed as usize];
+            if (own.max(of_seed) as usize) < count {
+                sets.join(own, of_seed);
+            }
+        }
+        (0..count as u32).filter(|&component| sets.find(component) == component).count()
     }
 
     /// Whether a mesh is a manifold of all particles that is open only at the faces of the box.
