@@ -320,7 +320,11 @@ impl Field {
         (options.borders, options.smooth) = (borders, smooth);
         let field = solid.field(&options).map_err(raised)?;
         let known = serde_json::json!({
-            "kind": if matches!(field.kind(), MeshKind::Parts { .. }) { "part" } else { "scan" },
+            "kind": match field.kind() {
+                MeshKind::Parts { .. } => "part",
+                MeshKind::Union { .. } => "union",
+                _ => "scan",
+            },
             "repairs": solid.repairs().words(),
             "border_edges": solid.border_edges(),
             "border_loops": solid.border_loops(),

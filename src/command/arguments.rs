@@ -521,7 +521,7 @@ impl SampleArguments {
         self.sampling.complete(&record.settings);
     }
 
-    /// Adds the columns of a record, but for those whose names are given.
+    /// Adds the values of a record, except those that the command line names itself.
     fn add_values(&mut self, mut recorded: Vec<ValueText>) {
         recorded.retain(|own| self.values.iter().all(|given| given.name != own.name));
         self.values.splice(0..0, recorded);

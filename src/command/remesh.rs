@@ -8,7 +8,7 @@ use marching_particles::export::Vertices;
 use marching_particles::glam::DVec3;
 use marching_particles::math::{counted, grouped, significant};
 use marching_particles::remesh::{MeshChange, MeshEdges, MeshField, MeshOptions};
-use marching_particles::session::{MeshInfo, MeshPart, MeshScan};
+use marching_particles::session::{MeshInfo, MeshPart, MeshScan, MeshUnion};
 use marching_particles::{Sample, TriangleMesh};
 use serde::Serialize;
 use std::io::Read;
@@ -159,6 +159,15 @@ fn made_of_scan(&MeshScan { size: [x, y, z], cell, smooth }: &MeshScan) -> Vec<S
     )]
 }
 
+/// How several bodies became a field, in words.
+fn made_of_bodies(&MeshUnion { bodies, edges }: &MeshUnion) -> String {
+    format!(
+        "the union of {}, with {} of the mesh kept; where bodies intersect, their edges are searched for",
+        counted(bodies, "body", "bodies"),
+        counted(edges, "sharp edge", "sharp edges"),
+    )
+}
+
 impl RemeshInfo {
     /// Compares the mesh of a sample with the old one.
     pub(crate) fn compare(&mut self, field: &MeshField, sample: &Sample) {
@@ -180,6 +189,7 @@ impl RemeshInfo {
             notes,
             part,
             scan,
+            union,
         } = &self.mesh;
         let mut lines = vec![
             format!("mesh: {name}"),
@@ -199,7 +209,7 @@ impl RemeshInfo {
                 grouped(*border_edges)
             ));
         }
-        if *fan_edges > 0 {
+        if scan.is_some() && *fan_edges > 0 {
             lines.push(format!(
                 "{} with more than two faces: inside is where the winding number is above a half",
                 counted(*fan_edges, "edge", "edges")
@@ -210,6 +220,7 @@ impl RemeshInfo {
         }
         lines.extend(part.iter().flat_map(made_of_part));
         lines.extend(scan.iter().flat_map(made_of_scan));
+        lines.extend(union.as_ref().map(made_of_bodies));
         lines.extend(notes.iter().map(|note| format!("note: {note}")));
         lines
     }

@@ -160,7 +160,8 @@ pub enum AxisOrder {
 }
 
 impl AxisOrder {
-    /// What the axes of the array have, from the fastest-changing axis on; or back.
+    /// Three values, one for each axis of the array, with that of the fastest-changing axis first.
+    /// Its own inverse.
     fn sorted<T>(self, [a, b, c]: [T; 3]) -> [T; 3] {
         match self {
             Self::FirstFastest => [a, b, c],

@@ -90,7 +90,7 @@ impl CreaseRows {
         (0..self.first.len()).filter(|&i| !self.is_first(i)).count()
     }
 
-    /// Whether two points are rows of the same particle.
+    /// Whether two points are the same particle, which has one row on each patch that it borders.
     pub(super) fn are_one(&self, i: usize, j: usize) -> bool {
         !self.is_empty() && self.particle[i] == self.particle[j]
     }

@@ -15,8 +15,8 @@
 //!
 //! A mesh fills the places where stars disagree. The figures do not: their triangles are those that
 //! stars see, so that no filled place makes a surface look closed. The report of a run joins its
-//! particles to a mesh where these triangles leave the surface open; if the mesh closes it, and
-//! joins only what one front has connected, components and Euler number are those of the mesh.
+//! particles to a mesh where these triangles leave the surface open; if the mesh closes it, and the
+//! field leads along its edges, components and Euler number are those of the mesh.
 //!
 //! On a surface with creases the neighbours of a particle are those on its own patch, and the
 //! triangles are those of the mesh, which end at the creases. A particle on a crease has no full

@@ -42,6 +42,58 @@ impl<'a> ByField<'a> {
         let height = first_order_height(value, gradient.length());
         (position - normal * if height.is_finite() { height } else { 0.0 }, normal)
     }
+
+    fn way(&mut self, one: OrientedPoint, other: OrientedPoint) -> Way {
+        let ((from, n), (to, m)) = (self.on_surface(one), self.on_surface(other));
+        let lift = (0.5 * (to - from).dot(n + m)).abs();
+        Way { from, to, lift, rounding: SINGLE_ROUNDING * (to - from).length() }
+    }
+
+    /// Whether two points of one patch face the same way, and the way along the surface from one
+    /// leads to the other.
+    pub(crate) fn leads(&mut self, patch: Option<u32>, one: OrientedPoint, other: OrientedPoint) -> bool {
+        self.patch = patch;
+        let way = self.way(one, other);
+        one.normal.dot(other.normal) > 0.0 && way.missed(self.field.on(patch)) <= way.allowed()
+    }
+}
+
+/// A way along the surface from one point to another.
+struct Way {
+    from: DVec3,
+    to: DVec3,
+    /// Lift of the two points.
+    lift: f64,
+    /// Lift that rounding leaves meaningless.
+    rounding: f64,
+}
+
+impl Way {
+    /// Largest distance at which the way passes a point of its own sheet.
+    fn allowed(&self) -> f64 {
+        0.5 * self.lift.max(self.rounding)
+    }
+
+    /// Distance at which the way passes the point that it should lead to; NaN if it ends at a
+    /// singular point.
+    fn missed(&self, field: &mut dyn Evaluator) -> f64 {
+        let (mut at, mut normal) = (self.from, DVec3::NAN);
+        for left in (0..=STEPS).rev() {
+            // One Newton step to the surface.
+            let jet = field.jet(at);
+            let slope = jet.gradient.length();
+            at -= jet.gradient * (jet.value / (slope * slope));
+            normal = jet.gradient / slope;
+            if left > 0 {
+                let ahead = self.to - at;
+                let ahead = ahead - normal * ahead.dot(normal);
+                let (direction, length) = (ahead.normalize_or_zero(), ahead.length() / f64::from(left));
+                let curvature = direction.dot(jet.hessian.apply(direction)) / slope;
+                at += direction * length - normal * (0.5 * curvature * length * length);
+            }
+        }
+        (self.to - at).dot(normal).abs()
+    }
 }
 
 impl TellsApart for ByField<'_> {
@@ -61,28 +113,9 @@ impl TellsApart for ByField<'_> {
     /// If the pair is doubtful, whether the way along the surface from one point leads past the
     /// other.
     fn are_two(&mut self, one: OrientedPoint, other: OrientedPoint, facing_away: f64) -> bool {
-        let ((p, n), (q, m)) = (self.on_surface(one), self.on_surface(other));
-        let lift = (0.5 * (q - p).dot(n + m)).abs();
-        if lift <= SHARE * facing_away || lift <= SINGLE_ROUNDING * (q - p).length() {
-            return false;
-        }
-        let field = self.field.on(self.patch);
-        let (mut at, mut normal) = (p, n);
-        for left in (0..=STEPS).rev() {
-            // One Newton step to the surface.
-            let jet = field.jet(at);
-            let slope = jet.gradient.length();
-            at -= jet.gradient * (jet.value / (slope * slope));
-            normal = jet.gradient / slope;
-            if left > 0 {
-                let ahead = q - at;
-                let ahead = ahead - normal * ahead.dot(normal);
-                let (direction, length) = (ahead.normalize_or_zero(), ahead.length() / f64::from(left));
-                let curvature = direction.dot(jet.hessian.apply(direction)) / slope;
-                at += direction * length - normal * (0.5 * curvature * length * length);
-            }
-        }
+        let way = self.way(one, other);
         // False for NaN: if the way ends at a singular point, nothing is known.
-        (q - at).dot(normal).abs() > 0.5 * lift
+        way.lift > (SHARE * facing_away).max(way.rounding)
+            && way.missed(self.field.on(self.patch)) > way.allowed()
     }
 }

@@ -1,14 +1,17 @@
 //! Triangle meshes as fields, to sample the surface of a mesh again with its edges.
 //!
 //! A [`TriangleMesh`] is [repaired](TriangleMesh::solid) to a [`MeshSolid`], which becomes a
-//! [`MeshField`] in one of two ways:
+//! [`MeshField`] in one of three ways:
 //!
 //! * *Parts with edges*. The faces are divided into patches along edges whose faces meet at an
 //!   angle (`patches`). Each patch has a smooth function (`sheet`); f is their maximum at convex
 //!   edges and their minimum at concave ones (`parts`, `rule`).
 //! * *Scans and smooth shapes*. The signed distance from the mesh, computed on a grid, becomes an
 //!   image, and a spline through its voxels is f (`scan`).
+//! * *Bodies that may intersect or touch*. Each becomes a field in one of these two ways, and f is their
+//!   minimum (`bodies`).
 
+mod bodies;
 mod colours;
 mod compare;
 mod cross;
@@ -27,7 +30,7 @@ pub use compare::{MeshChange, MeshDistances};
 pub use mesh::TriangleMesh;
 pub use prepare::{MeshRepairs, MeshSolid};
 
-use crate::field::{Evaluator, Facts, Field, Frame, Jet, Piecewise};
+use crate::field::{Combined, Evaluator, Facts, Field, Frame, Jet, Piecewise};
 use crate::math::{counted, grouped, significant};
 use crate::pointcloud::read::ReadError;
 use crate::slices::{self, pause};
@@ -172,8 +175,9 @@ pub enum MeshError {
 /// Which edges of a mesh stay sharp.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MeshEdges {
-    /// Edges whose faces meet at 30° or more, if the mesh is closed, its faces do not intersect,
-    /// and such edges form curves. A scan or a smooth shape keeps no edges.
+    /// Edges whose faces meet at 30° or more, if the mesh is closed and such edges form curves. A
+    /// scan or a smooth shape keeps no edges. If a mesh consists of up to 32 closed bodies whose
+    /// boxes overlap, each is judged by itself, and the edges at which they meet stay sharp.
     #[default]
     Auto,
     /// Edges whose faces meet at this angle or more, in degrees.
@@ -232,6 +236,13 @@ pub enum MeshKind {
         /// Width of the Gaussian in cells.
         smooth: f64,
     },
+    /// The union of closed bodies whose boxes overlap, each of which became a field by itself.
+    Union {
+        /// Number of bodies.
+        bodies: usize,
+        /// Sharp edges of all bodies, including those inside of others.
+        edges: usize,
+    },
 }
 
 /// The border of an open surface, which is kept.
@@ -261,6 +272,7 @@ pub struct MeshField {
 enum Function {
     Parts(PartsField),
     Scan(Arc<ScanField>),
+    Union { united: Combined, bodies: Vec<MeshField> },
 }
 
 impl MeshSolid {
@@ -297,10 +309,18 @@ impl MeshSolid {
         if must_keep && smooth.is_some() {
             return Err(MeshError::Both);
         }
+        let has_borders = self.border_edges() > 0;
+        let may_keep = must_keep || edges == MeshEdges::Auto && smooth.is_none() && !has_borders;
+        if may_keep
+            && !has_borders
+            && let Some(bodies) = self.bodies().await
+        {
+            return self.united(bodies, options).await;
+        }
         if must_keep && !is_rimmed && !self.is_closed() {
             return Err(MeshError::Open { borders: self.border_edges(), fans: self.fan_edges() });
         }
-        let may_keep = must_keep || edges == MeshEdges::Auto && smooth.is_none() && self.is_closed();
+        let may_keep = must_keep || may_keep && self.is_closed();
         let intersection = if may_keep { self.intersection().await } else { None };
         if let Some(place) = intersection.filter(|_| must_keep) {
             return Err(MeshError::Intersects { place: self.origin + place });
@@ -377,15 +397,40 @@ impl MeshField {
     fn edge_points(&self) -> Vec<DVec3> {
         /// Points on each edge of the mesh.
         const EACH: u32 = 8;
-        let Function::Parts(parts) = &self.function else { return Vec::new() };
         let along = |[a, b]: [DVec3; 2]| (0..=EACH).map(move |k| a.lerp(b, f64::from(k) / f64::from(EACH)));
-        parts.segments().flat_map(along).collect()
+        match &self.function {
+            Function::Parts(parts) => parts.segments().flat_map(along).collect(),
+            Function::Scan(_) => Vec::new(),
+            Function::Union { bodies, .. } => {
+                let of_body = |k: usize| {
+                    let origin = bodies[k].solid.origin;
+                    let own = bodies[k].edge_points().into_iter().map(move |p| origin + p);
+                    own.filter(move |&p| self.is_outermost(k, p)).map(|p| p - self.solid.origin)
+                };
+                (0..bodies.len()).flat_map(of_body).collect()
+            }
+        }
+    }
+
+    /// The bodies of which this is the union; none if it is none.
+    fn bodies(&self) -> &[Self] {
+        if let Function::Union { bodies, .. } = &self.function { bodies } else { &[] }
+    }
+
+    /// Whether a point of the surface of body `own` is in no other body.
+    fn is_outermost(&self, own: usize, p: DVec3) -> bool {
+        /// Depth that counts as on the surface, as a share of the diagonal: the precision of a file
+        /// with single-precision numbers.
+        const ON: f64 = 1e-6;
+        let depth = ON * self.solid.mesh.bounds().diagonal();
+        self.bodies().iter().enumerate().all(|(other, body)| other == own || body.value(p) >= -depth)
     }
 
     fn function(&self) -> &dyn Field {
         match &self.function {
             Function::Parts(field) => field,
             Function::Scan(field) => &**field,
+            Function::Union { united, .. } => &**united,
         }
     }
 }

@@ -389,7 +389,7 @@ impl Planes {
 }
 
 /// The connected part of each face, where parts end at the edges in `is_limit`.
-fn flood(count: usize, edges: &Edges, is_limit: &[bool]) -> Vec<u32> {
+pub(super) fn flood(count: usize, edges: &Edges, is_limit: &[bool]) -> Vec<u32> {
     let mut part = vec![NONE; count];
     let mut parts = 0;
     let mut open = Vec::new();

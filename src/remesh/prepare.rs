@@ -200,6 +200,10 @@ impl MeshSolid {
         self.is_sheet
     }
 
+    pub(super) fn marks(&self) -> Vec<[DVec3; 2]> {
+        self.marks.iter().map(|segment| segment.map(|end| end + self.origin)).collect()
+    }
+
     /// Whether a point is on the inner side of the nearest face (J. A. Bærentzen & H. Aanæs,
     /// "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
     pub(super) fn is_below(&self, p: DVec3) -> bool {
@@ -218,10 +222,10 @@ impl MeshSolid {
         normal.dot(p - nearest.point) < 0.0
     }
 
-    /// Keeps the edges along these segments sharp as well, whatever their angle: the edges of the
-    /// mesh both ends of which lie on one of them. Edges that do not divide a patch, as a lone one
-    /// within a smooth surface, are rounded nevertheless: [`MeshKind::Parts`] counts them. With
-    /// [`MeshEdges::Rounded`] no others are sharp.
+    /// Also keeps every edge of the mesh sharp whose two ends lie on one of these segments, whatever
+    /// its angle. With [`MeshEdges::Rounded`] these are the only sharp edges. An edge that does not
+    /// separate two patches, such as a single one within a smooth surface, is rounded, and counted
+    /// in [`MeshKind::Parts`].
     ///
     /// [`MeshKind::Parts`]: crate::remesh::MeshKind::Parts
     /// [`MeshEdges::Rounded`]: crate::remesh::MeshEdges::Rounded

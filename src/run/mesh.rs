@@ -10,8 +10,10 @@ use crate::mesh::bodies::{Body, Split};
 use crate::mesh::facing::Inside;
 use crate::mesh::stars::Sheets;
 use crate::mesh::triangulation::{self, Middle, Triangulation};
-use crate::particles::Particles;
+use crate::particles::{OrientedPoint, Particles};
+use crate::quality::sheets::ByField;
 use crate::slices::{self, Estimated, MEDIUM};
+use crate::spatial::tree::Tree;
 use crate::topology::Component;
 use glam::DVec3;
 use serde::Serialize;
@@ -214,7 +216,7 @@ impl RunState<'_> {
         if let MeshState::Joining(work) = &mut self.meshing.state {
             let mesh = work.advance(budget)?;
             self.meshing.state = MeshState::Joined(Box::new(self.judged(field, mesh)));
-            self.take_topology();
+            self.take_topology(field);
         }
         self.meshing.joined().map(|mesh| MeshAnswer::new(mesh, self.particles()))
     }
@@ -238,11 +240,11 @@ impl RunState<'_> {
 
     /// Takes the topology of the sample from its mesh if the triangles of natural neighbours leave
     /// gaps and the mesh does not: they do where the surface bends too much for its particles. A
-    /// mesh that joins what neither triangles nor a front connect bridges more than gaps.
-    pub(super) fn take_topology(&mut self) {
+    /// mesh that joins what the field does not connect bridges more than gaps.
+    pub(super) fn take_topology(&mut self, field: &dyn Field) {
         let (Some(_), Some(mesh)) = (&self.measuring.measured.opening, self.meshing.joined()) else { return };
-        let components = self.connected();
-        if !self.is_whole(mesh) || mesh.topology.components.len() != components {
+        let components = mesh.topology.components.len();
+        if !self.is_whole(mesh) || self.connected(mesh, field) != components {
             return;
         }
         let euler = mesh.topology.euler();
@@ -251,22 +253,47 @@ impl RunState<'_> {
         (connectivity.components, connectivity.euler, measured.opening) = (components, euler, None);
     }
 
-    /// Number of components of the particles if those of one front are on one component, as its
-    /// children are on the sheet of their parents.
-    fn connected(&self) -> usize {
-        let measured = &self.measuring.measured;
-        let count = measured.figures.connectivity.components;
+    /// Number of components of the triangles of natural neighbours, joined where the field leads
+    /// along an edge of the mesh, and from a particle that the mesh leaves out to one near it.
+    fn connected(&self, mesh: &Triangulation, field: &dyn Field) -> usize {
+        /// Distance, in radii, within which a particle that the mesh leaves out is led to others: a
+        /// spacing.
+        const NEAR: f32 = 2.0;
+        let component = &self.measuring.measured.component;
+        let count = self.measuring.measured.figures.connectivity.components;
+        let particles = self.particles();
         let mut sets = Forest::new(count);
-        for (&own, &seed) in measured.component.iter().zip(&self.particles().fronts()) {
-            let of_seed = measured.component[seed as usize];
-            if (own.max(of_seed) as usize) < count {
-                sets.join(own, of_seed);
+        let evaluator = self.evaluator(field);
+        let mut field = ByField::new(&*evaluator);
+        let mut join = |[i, j]: [u32; 2]| {
+            let of = [i, j].map(|particle| component[particle as usize]);
+            let [i, j] = [i as usize, j as usize];
+            let patch = particles.patch_of(i);
+            if of.iter().any(|&own| own as usize >= count)
+                || sets.find(of[0]) == sets.find(of[1])
+                || patch != particles.patch_of(j)
+            {
+                return;
+            }
+            let [one, other] = [i, j].map(|particle| OrientedPoint::of(particles, particle));
+            if field.leads(patch, one, other) {
+                sets.join(of[0], of[1]);
+            }
+        };
+        mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).for_each(&mut join);
+        if !mesh.left_out.is_empty() {
+            let (tree, mut near) = (Tree::new(&particles.local), Vec::new());
+            for &i in &mesh.left_out {
+                let (p, reach) = (particles.local[i as usize], NEAR * particles.radius[i as usize]);
+                near.clear();
+                tree.within_box(p - reach, p + reach, &mut near);
+                near.iter().for_each(|&j| join([tree.origin[j as usize], i]));
             }
         }
         (0..count as u32).filter(|&component| sets.find(component) == component).count()
     }
 
-    /// Whether a mesh is a manifold of all particles that is open only at the faces of the box.
+    /// Whether a mesh is a manifold that is open only at the faces of the box.
     fn is_whole(&self, mesh: &Triangulation) -> bool {
         /// Distance from a face, in radii, within which an edge is at the box: one and a half
         /// spacings.
@@ -277,8 +304,7 @@ impl RunState<'_> {
             let from_face = (p - bounds.lo()).min(bounds.hi() - p).min_element();
             from_face <= AT_BOX * f64::from(particles.radius[v as usize])
         };
-        let is_complete = mesh.topology.is_manifold() && mesh.left_out.is_empty();
-        is_complete && mesh.topology.lone_edges.iter().all(|edge| edge.iter().all(is_at_box))
+        mesh.topology.is_manifold() && mesh.topology.lone_edges.iter().all(|edge| edge.iter().all(is_at_box))
     }
 
     fn mesh(&self) -> Option<&Triangulation> {

@@ -149,8 +149,8 @@ pub struct Proof {
     pub creases: Option<usize>,
     /// Particles at which creases meet or end; none if the surface has no edges.
     pub corners: Option<usize>,
-    /// The search by which edges were found in the values of f; none if the field tells the pieces
-    /// that meet at its edges, or no edge was found.
+    /// How the edges were found, if they were searched for in the values of f; none if the field
+    /// itself says which pieces meet at its edges, and if no edge was found.
     #[cfg_attr(test, ts(as = "Option<String>"))]
     pub edges_found: Option<EdgeSearch>,
     /// Curves of particles along which patches of the surface meet without an edge; none if there
@@ -350,7 +350,7 @@ impl<'f> RunState<'f> {
             } else if is_due {
                 let input = self.measuring_input(measured);
                 let result = input.in_slices(&self.field.function(field), self.sampler.frame()).await;
-                self.keep(result);
+                self.keep(field, result);
                 while !self.close(field, 1) {
                     slices::pause().await;
                 }
@@ -375,7 +375,7 @@ impl<'f> RunState<'f> {
             });
             let result = self.measuring.work.insert(work).advance(budget)?;
             self.measuring.work = None;
-            self.keep(result);
+            self.keep(field, result);
         }
         if measured != Measured::Nothing && !self.close(field, budget) {
             return None;
@@ -414,13 +414,13 @@ impl<'f> RunState<'f> {
         }
     }
 
-    fn keep(&mut self, MeasuringResult { front, now, facing, sheets }: MeasuringResult) {
+    fn keep(&mut self, field: &dyn Field, MeasuringResult { front, now, facing, sheets }: MeasuringResult) {
         if front.is_some() {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }
         (self.measuring.measured, self.measuring.facing, self.measuring.sheets) =
             (now, Some(facing), Some(sheets));
-        self.take_topology();
+        self.take_topology(field);
     }
 
     /// Joins the particles if their triangles leave the surface open: only the mesh, and the field,

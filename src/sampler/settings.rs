@@ -182,8 +182,8 @@ pub struct Settings {
     pub radius: Option<Radius>,
     /// Grid cells along the longest side of the box, to find a surface whose field has no
     /// [bounds](crate::field::Bounded), and its edges if the field does not tell its pieces: a part
-    /// smaller than a cell may be missed. Half as many take a quarter of the evaluations. The
-    /// default is 64; edges are searched with at most 256.
+    /// smaller than a cell may be missed. The number of evaluations grows with the square of this
+    /// one. The default is 64; edges are searched with at most 256.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub survey_cells: Option<u32>,
     /// Uniform or adaptive sampling.

@@ -29,6 +29,18 @@ pub struct MeshInfo {
     pub part: Option<MeshPart>,
     /// The grid, if it counts as a scan.
     pub scan: Option<MeshScan>,
+    /// The bodies, if several may intersect or touch.
+    pub union: Option<MeshUnion>,
+}
+
+/// The union of closed bodies whose boxes overlap.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct MeshUnion {
+    /// Number of bodies.
+    pub bodies: usize,
+    /// Sharp edges of all bodies, including those inside of others.
+    pub edges: usize,
 }
 
 /// Smooth patches between sharp edges.
@@ -80,7 +92,7 @@ pub use with_meshes::{OpenedMesh, colour_values};
 mod with_meshes {
     use super::super::opened::{Surface, Wanted};
     use super::super::{FieldAnswer, FieldRequest, Session, Source};
-    use super::{MeshBorder, MeshInfo, MeshPart, MeshScan};
+    use super::{MeshBorder, MeshInfo, MeshPart, MeshScan, MeshUnion};
     use crate::export::{COLOURS, MeshBuffers, Vertices};
     use crate::field::formula::Parameter;
     use crate::remesh::{
@@ -248,12 +260,14 @@ mod with_meshes {
         pub fn new(name: &str, notes: &[String], field: &MeshField) -> Self {
             let solid = field.solid();
             let border = |MeshRim { edges, loops, is_smoothed, .. }| MeshBorder { edges, loops, is_smoothed };
-            let (part, scan) = match field.kind() {
+            let (mut part, mut scan, mut union) = (None, None, None);
+            match field.kind() {
                 MeshKind::Parts { patches, edges, corners, faded, rim } => {
-                    (Some(MeshPart { patches, edges, corners, faded, rim: rim.map(border) }), None)
+                    part = Some(MeshPart { patches, edges, corners, faded, rim: rim.map(border) });
                 }
-                MeshKind::Scan { size, cell, smooth } => (None, Some(MeshScan { size, cell, smooth })),
-            };
+                MeshKind::Scan { size, cell, smooth } => scan = Some(MeshScan { size, cell, smooth }),
+                MeshKind::Union { bodies, edges } => union = Some(MeshUnion { bodies, edges }),
+            }
             Self {
                 name: name.to_owned(),
                 vertices: solid.mesh().vertices().len(),
@@ -266,6 +280,7 @@ mod with_meshes {
                 notes: notes.to_vec(),
                 part,
                 scan,
+                union,
             }
         }
     }

@@ -20,7 +20,7 @@ pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, d
 pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 pub use image::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
-pub use mesh::{MeshBorder, MeshInfo, MeshPart, MeshScan};
+pub use mesh::{MeshBorder, MeshInfo, MeshPart, MeshScan, MeshUnion};
 #[cfg(all(feature = "images", feature = "points"))]
 pub use mesh::{OpenedMesh, colour_values};
 #[cfg(feature = "images")]

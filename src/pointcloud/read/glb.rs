@@ -238,8 +238,10 @@ impl<'a> Glb<'a> {
         let text =
             core::str::from_utf8(text).map_err(|_| wrong("JSON", "it is not UTF-8; export it again"))?;
         let document = text.trim_end_matches(['\0', ' ']).parse();
-        let document = document
-            .map_err(|error: tinyjson::JsonParseError| wrong("JSON", format!("{error}; export it again")))?;
+        let document = document.map_err(|error: tinyjson::JsonParseError| {
+            let error = error.to_string().replace(char::is_control, "\u{fffd}");
+            wrong("JSON", format!("{error}; export it again"))
+        })?;
         let glb = Self { document, binary };
         let required = glb.root().list("extensionsRequired")?;
         let is_required =

@@ -1,5 +1,6 @@
 //! The stage that covers a surface with particles.
 
+use crate::math::Bounds;
 use crate::particles::OrientedPoint;
 use crate::sampler::attempt::Attempt;
 use crate::sampler::constraint::{CreaseLadder, tips};
@@ -237,6 +238,11 @@ impl Cover {
             // Where branches are equal, on creases and where bodies share a plane, only fronts of
             // the creases begin.
             let (place, size) = (seed.position, self.plan.radius);
+            // Inside a solid f may be zero on the plane that two bodies share, and be no piece.
+            let around = Bounds::point(place.as_dvec3()).enlarged(size.into());
+            if !probe.may_have_zeros(patch, &around) {
+                return false;
+            }
             let normal = probe.gradient(place).1.normalize_or_zero();
             if ![normal, -normal].into_iter().all(|aside| probe.is_on_patch(place, aside, size, patch)) {
                 return false;

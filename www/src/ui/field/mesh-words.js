@@ -10,7 +10,7 @@ export function facesOf({ faces, vertices, pieces, border_edges, fan_edges, scan
   ];
   if (scan && border_edges > 0)
     parts.push(`Holes with ${plural(border_edges, 'edge')} at their borders are closed smoothly.`);
-  if (fan_edges > 0)
+  if (scan && fan_edges > 0)
     parts.push(`${plural(fan_edges, 'edge')} with more than two faces: inside is where faces wind around.`);
   return parts.join(' ');
 }
@@ -19,7 +19,7 @@ export function facesOf({ faces, vertices, pieces, border_edges, fan_edges, scan
 export const mendedOf = ({ mended }) => (mended.length > 0 ? `Mended: ${mended.join(', ')}.` : '');
 
 /** Says what kind of object the mesh is treated as. @param {MeshInfo} info */
-export function madeOf({ part, scan }) {
+export function madeOf({ part, scan, union }) {
   if (part) {
     const faded = part.faded > 0 ? ` ${plural(part.faded, 'sharp edge')} that end within a patch will be rounded.` : '';
     const { patches, edges, corners, rim } = part;
@@ -29,6 +29,7 @@ export function madeOf({ part, scan }) {
       : '';
     return `A part with edges: ${plural(patches, 'patch', 'patches')} between ${plural(edges, 'sharp edge')} of the mesh and ${plural(corners, 'corner')}.${border}${faded}`;
   }
+  if (union) return `The union of ${plural(union.bodies, 'body', 'bodies')}, with ${plural(union.edges, 'sharp edge')} of the mesh.`;
   if (!scan) return '';
   const { size, cell, smooth } = scan;
   const blur = smooth > 0 ? `, smoothed by a Gaussian of ${formatSignificant(smooth, 2)} cells` : '';
