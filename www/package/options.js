@@ -3,6 +3,7 @@
  *
  * @module
  */
+import { slipsBetween } from '../src/engine/spelling.js';
 import { choice, flag, number, shown, vectors } from './checks.js';
 import { InputError } from './errors.js';
 import { blobOf, imageOf, isImage, valuesOf } from './image.js';
@@ -135,22 +136,10 @@ const KNOWN = [
   'onProgress',
 ];
 
-/** Number of letters to insert, to leave out or to replace between two words. @param {string} a @param {string} b */
-function distance(a, b) {
-  let row = Array.from({ length: b.length + 1 }, (_, k) => k);
-  for (let i = 1; i <= a.length; i += 1) {
-    const next = [i];
-    for (let k = 1; k <= b.length; k += 1)
-      next.push(Math.min(next[k - 1] + 1, row[k] + 1, row[k - 1] + (a[i - 1] === b[k - 1] ? 0 : 1)));
-    row = next;
-  }
-  return row[b.length];
-}
-
 /** Which name was meant, or all of them. @param {string} unknown @param {string[]} known */
 export function meant(unknown, known) {
   const plain = unknown.replaceAll(/[_-]/g, '').toLowerCase();
-  const near = known.find((name) => distance(plain, name.toLowerCase()) <= (plain.length > 4 ? 2 : 1));
+  const near = known.find((name) => slipsBetween(plain, name.toLowerCase()) <= (plain.length > 4 ? 2 : 1));
   return near === undefined ? `There are ${known.join(', ')}.` : `Did you mean ${near}?`;
 }
 

@@ -18,6 +18,7 @@ const ENGINE_FACE = [
   'engine/columns',
   'engine/core-numbers',
   'engine/scans',
+  'engine/spelling',
   'engine/share/base64url',
 ];
 
@@ -34,6 +35,7 @@ const MAY_USE = {
   'engine/core-numbers': [],
   'engine/constants': [],
   'engine/scans': [],
+  'engine/spelling': [],
   'engine/vector': ['engine/types'],
   'engine/pulls': ['engine/types', 'engine/vector'],
   'engine/given': ['engine/types'],
