@@ -79,7 +79,7 @@ export function appliedTo({ rest, set, reset }, now, description) {
 const percent = (share) => `${Number((100 * share).toPrecision(10))}%`;
 
 /**
- * The state of the engine in the words of `sample`, without what is the default.
+ * The state of the engine in the words of `sample`; of the options, only those that differ from their defaults.
  * @param {State} state @param {Description | null} description
  * @returns {ViewState}
  */

@@ -69,7 +69,7 @@ export interface View {
    * defaults
    */
   readonly ready: Promise<Report | null>;
-  /** a copy of the whole state, without what is the default */
+  /** a copy of the state, in the words of `sample`; of the options, only those that differ from their defaults */
   readonly state: ViewState;
   /** the last report; null while particles are being placed */
   readonly report: Report | null;
