@@ -72,7 +72,7 @@ test('an element is busy until its particles are there, and takes parameters bef
   expect(await on(page, 'shown.ariaBusy')).toBe('true');
   await sampled(page);
   await expect.poll(() => on(page, 'shown.ariaBusy')).toBe('false');
-  await expect.poll(() => on(page, 'shown.view.state.parameters')).toEqual({ a: 0.5 });
+  await expect.poll(() => on(page, 'shown.view.state.params')).toEqual({ a: 0.5 });
 });
 
 test('an attribute that goes takes back what it said', { tag: '@all' }, async ({ page }) => {
@@ -80,13 +80,12 @@ test('an attribute that goes takes back what it said', { tag: '@all' }, async ({
   await sampled(page);
   expect(await on(page, 'shown.ariaLabel')).toBe('torus');
   await on(page, 'shown.params = "R=0.8"');
-  await expect.poll(() => on(page, 'shown.view.state.parameters')).toEqual({ R: 0.8 });
+  await expect.poll(() => on(page, 'shown.view.state.params')).toEqual({ R: 0.8 });
   await on(page, '["surface", "params", "draw", "colour", "theme"].forEach((name) => shown.removeAttribute(name))');
   await expect.poll(() => on(page, 'shown.view.state.surface')).toBe('ellipsoid');
-  expect(await on(page, 'shown.view.state')).toMatchObject({
-    parameters: {},
-    view: { draw: 'discs', colour: 'level', theme: 'auto' },
-  });
+  const { params, view } = await on(page, 'shown.view.state');
+  expect(params).toEqual({});
+  expect(view).toMatchObject({ draw: 'discs', colour: 'level', theme: 'auto' });
   expect(await on(page, 'shown.hasAttribute("aria-label")')).toBe(false);
   await sampled(page);
   expect(await on(page, 'told.every((what) => what === "report")')).toBe(true);

@@ -46,7 +46,7 @@ test('the examples run, under the policy of the page, with their code beside the
   await page.locator('#a').fill('0.5');
   await expect(knot).toHaveAttribute('params', 'a=0.5');
   await expect
-    .poll(() => knot.evaluate((/** @type {any} */ { view, report }) => report && view.state.parameters.a))
+    .poll(() => knot.evaluate((/** @type {any} */ { view, report }) => report && view.state.params.a))
     .toBe(0.5);
 
   // Those in sight are painted without a graphics card.
