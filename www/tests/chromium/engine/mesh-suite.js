@@ -54,7 +54,7 @@ export const suite = () =>
 
     await test.step('it is on the canvas in the colours that are read back', async () => {
       await look(page, { ...plain, colour: 'plain' });
-      const box = await page.locator('#stage canvas').boundingBox();
+      const box = await page.locator('#canvas-host canvas').boundingBox();
       if (!box) throw new Error('the canvas has no box');
       // A corner of the canvas that no panel covers shows the background alone.
       const shot = await page.screenshot({ clip: { x: box.x, y: box.y, width: 4, height: 4 } });
