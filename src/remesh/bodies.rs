@@ -31,9 +31,8 @@ impl MeshSolid {
             .iter()
             .map(|&piece| Bounds::around(pieces[piece].iter().flat_map(|face| mesh.corners(face))))
             .collect();
-        let are_apart = boxes.iter().enumerate().all(|(k, own)| {
-            boxes[..k].iter().all(|other| own.is_apart_from(other))
-        });
+        let are_apart =
+            boxes.iter().enumerate().all(|(k, own)| boxes[..k].iter().all(|other| own.is_apart_from(other)));
         let is_closed = |faces: &Vec<[u32; 3]>| Edges::new(faces).count(|sides| sides != 2) == 0;
         if are_apart || outer.len() > MOST || !pieces.iter().all(is_closed) {
             return None;

@@ -330,16 +330,20 @@ impl<'a> EdgedEvaluator<'a> {
         let labels = self.table.labels_near(p);
         // On the surface, where labels are asked for, this needs no call.
         if let [(label, vertex)] = labels[..]
+            && self.table.is_beside(vertex, p)
             && self.table.fits(vertex, p, 0.0)
         {
             return label;
         }
         let whole = self.field.value(p);
-        let jet_of = |piece: (u32, u32)| Some((piece.0, self.piece_jet(piece, p, whole)?));
-        let pieces: Vec<(u32, Jet)> = labels.into_iter().filter_map(jet_of).collect();
+        let jet_of = |&piece: &(u32, u32)| Some((piece.0, self.piece_jet(piece, p, whole)?));
+        let pieces: Vec<(u32, Jet)> = labels.iter().filter_map(jet_of).collect();
         let mut best = (f64::INFINITY, self.table.no_label());
         for &(label, jet) in &pieces {
-            if self.table.is_in_flush(label, p, &pieces) {
+            let vertex = labels.iter().find(|piece| piece.0 == label).map_or(0, |piece| piece.1);
+            if (jet.value - whole).abs() > self.table.error(vertex, p)
+                || self.table.is_in_flush(label, p, &pieces)
+            {
                 continue;
             }
             let slope = jet.gradient.length();

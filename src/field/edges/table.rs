@@ -161,17 +161,32 @@ impl EdgeTable {
         labels.into_iter().map(|(label, (_, vertex))| (label, vertex)).collect()
     }
 
+    /// Whether a place is so near to a vertex that an edge between them has [sites](Self::sites_near)
+    /// around the place.
+    pub(super) fn is_beside(&self, vertex: u32, p: DVec3) -> bool {
+        /// Largest distance in cells: sites are up to a cell apart, so that one is within half a
+        /// cell of where the edge passes.
+        const BESIDE: f64 = NEAR - 0.5;
+        self.vertices[vertex as usize].p.distance(p) <= BESIDE * self.cell
+    }
+
     /// Whether the polynomial of a vertex allows this value of its piece at a place around it. A
     /// piece is not known exactly between its vertices, but far more exactly than the distance.
     pub(super) fn fits(&self, vertex: u32, p: DVec3, value: f64) -> bool {
-        /// Largest error of the polynomial, over its slope, as a share of the distance from the
-        /// vertex: the surface of another function is nearly always farther away.
+        (self.vertices[vertex as usize].slope(p).0 - value).abs() <= self.error(vertex, p)
+    }
+
+    /// Largest error of the polynomial of a vertex at a place around it.
+    pub(super) fn error(&self, vertex: u32, p: DVec3) -> f64 {
+        /// The error over the slope, as a share of the distance from the vertex: the surface of
+        /// another function is nearly always farther away.
         const ERROR: f64 = 0.1;
+        /// Least distance in cells: beside an edge a piece is extrapolated.
+        const LEAST: f64 = 0.1;
         let vertex = &self.vertices[vertex as usize];
         let d = p - vertex.p;
         let bent = 0.5 * d.dot(vertex.jet.hessian.apply(d)).abs();
-        let error = ERROR * d.length() * vertex.jet.gradient.length() + bent;
-        (vertex.slope(p).0 - value).abs() <= error
+        ERROR * d.length().max(LEAST * self.cell) * vertex.jet.gradient.length() + bent
     }
 
     /// A number that is the label of no piece: of places on none of those that were found.
