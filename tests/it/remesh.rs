@@ -478,20 +478,41 @@ fn boxes_far_from_the_origin_keep_their_edges_and_farther_ones_are_refused() {
 }
 
 #[test]
-fn faces_that_intersect_or_touch_are_rounded() {
-    let crossed = joined(cuboid([1.0; 3]), &moved(&cuboid([1.0; 3]), |p| p + DVec3::splat(0.6)));
-    let solid = solid_of(&crossed);
-    assert!(matches!(
-        solid.field(&MeshOptions::with_edges(MeshEdges::Angle(30.0))),
-        Err(MeshError::Intersects { .. })
-    ));
-    let (field, made) = remeshed(&crossed, 3_000, "boxes that cross");
-    assert!(matches!(field.kind(), MeshKind::Scan { .. }));
-    check(&made, (2, 0, 2.0 - 0.4_f64.powi(3)), 0.02, "boxes that cross");
-    // Two boxes with one edge in common, of four faces.
-    let touching = joined(cuboid([1.0; 3]), &moved(&cuboid([1.0; 3]), |p| p + dvec3(1.0, 1.0, 0.0)));
-    let solid = solid_of(&touching);
-    assert_eq!((solid.fan_edges(), solid.border_edges()), (1, 0));
+fn bodies_that_intersect_or_touch_are_united() {
+    let and_moved = |by: DVec3| joined(cuboid([1.0; 3]), &moved(&cuboid([1.0; 3]), |p| p + by));
+    let hollow = joined(cuboid([1.0; 3]), &turned(&moved(&cuboid([0.6; 3]), |p| p + DVec3::splat(0.2))));
+    let rod = moved(&cuboid([0.2, 0.2, 2.0]), |p| p + dvec3(0.4, 0.4, -0.5));
+    // A rod through a hollow box leaves a ring of a room.
+    let shapes = [
+        ("boxes that cross", and_moved(DVec3::splat(0.6)), 2, 30, 2.0 - 0.4_f64.powi(3)),
+        ("boxes with a part of a face in common", and_moved(dvec3(1.0, 0.3, 0.2)), 2, 28, 2.0),
+        ("hollow box with a rod", joined(hollow, &rod), 2, 60, 1.0 - 0.216 + 0.04 * (1.0 + 0.6)),
+    ];
+    for (what, shape, euler, creases, volume) in shapes {
+        let (field, made) = remeshed(&shape, 3_000, what);
+        let MeshKind::Union { bodies: 2, .. } = field.kind() else { panic!("{what}: {:?}", field.kind()) };
+        check(&made, (euler, creases, volume), 1e-3, what);
+        let new = made.buffers(Vertices::Joined);
+        let change = field.compare(&new.positions, &new.triangles);
+        assert!(
+            change.to_new.largest < 1e-3 && change.edges.is_some_and(|far| far < 1e-6),
+            "{what}: {change:?}"
+        );
+        assert!((change.volume[0] / volume - 1.0).abs() < 0.005, "{what}: {change:?}");
+        assert!((change.area[0] / change.area[1] - 1.0).abs() < 0.005, "{what}: {change:?}");
+    }
+    // They share the particles of the edge that they have in common.
+    let (_, made) = remeshed(&and_moved(dvec3(1.0, 1.0, 0.0)), 3_000, "boxes with one edge in common");
+    assert_eq!((made.report().proof.creases, made.mesh().left_out.len()), (Some(23), 0));
+}
+
+#[test]
+fn a_body_that_intersects_itself_is_rounded() {
+    // A corner of a box is drawn out through the opposite side.
+    let folded = moved(&cuboid([1.0; 3]), |p| if p == DVec3::ONE { dvec3(0.4, 0.3, -0.5) } else { p });
+    let solid = solid_of(&folded);
+    let edged = solid.field(&MeshOptions::with_edges(MeshEdges::Angle(30.0)));
+    assert!(matches!(edged, Err(MeshError::Intersects { .. })), "{edged:?}");
     let field = solid.field(&MeshOptions::default()).expect("a scan");
     assert!(matches!(field.kind(), MeshKind::Scan { .. }));
 }

@@ -4,9 +4,9 @@
 //! The y axis of glTF, which points up there, is turned to z, as the writer of this format turns z
 //! to y.
 
-use super::ReadError;
 use super::input::{COMPONENTS, Input};
 use super::mesh::FileMesh;
+use super::{ReadError, wrong};
 use glam::{DMat4, DQuat, DVec3};
 use tinyjson::JsonValue;
 
@@ -44,10 +44,6 @@ fn depth(text: &[u8]) -> usize {
         deepest = deepest.max(depth);
     }
     deepest
-}
-
-fn wrong(name: impl Into<String>, message: impl Into<String>) -> ReadError {
-    ReadError::Member { member: name.into(), message: message.into() }
 }
 
 /// A member of the document, with its name for messages: `accessors[3].count`.
@@ -238,10 +234,8 @@ impl<'a> Glb<'a> {
         let text =
             core::str::from_utf8(text).map_err(|_| wrong("JSON", "it is not UTF-8; export it again"))?;
         let document = text.trim_end_matches(['\0', ' ']).parse();
-        let document = document.map_err(|error: tinyjson::JsonParseError| {
-            let error = error.to_string().replace(char::is_control, "\u{fffd}");
-            wrong("JSON", format!("{error}; export it again"))
-        })?;
+        let document = document
+            .map_err(|error: tinyjson::JsonParseError| wrong("JSON", format!("{error}; export it again")))?;
         let glb = Self { document, binary };
         let required = glb.root().list("extensionsRequired")?;
         let is_required =

@@ -119,6 +119,14 @@ pub fn check_size(bytes: u64) -> Result<(), ReadError> {
     }
 }
 
+/// The error of a part of a glTF or 3MF document. The message may quote the document: control
+/// characters are replaced.
+fn wrong(member: impl Into<String>, message: impl Into<String>) -> ReadError {
+    let [member, message] =
+        [member.into(), message.into()].map(|text| text.replace(char::is_control, "\u{fffd}"));
+    ReadError::Member { member, message }
+}
+
 /// Appends to a column.
 fn push<T>(column: &mut Vec<T>, item: T) -> Result<(), ReadError> {
     thin::push(column, item).ok_or(ReadError::Memory)

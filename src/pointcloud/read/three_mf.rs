@@ -4,9 +4,9 @@
 //!
 //! A file is a ZIP archive (PKWARE, APPNOTE 6.3) of XML documents.
 
-use super::ReadError;
 use super::input::Input;
 use super::mesh::FileMesh;
+use super::{ReadError, wrong};
 use crate::slices::{MEDIUM, pause};
 use flate2::bufread::DeflateDecoder;
 use glam::{DMat4, DVec3};
@@ -33,10 +33,6 @@ const UNITS: [(&str, f64); 6] = [
     ("foot", 304.8),
     ("meter", 1e3),
 ];
-
-fn wrong(name: impl Into<String>, message: impl Into<String>) -> ReadError {
-    ReadError::Member { member: name.into(), message: message.into() }
-}
 
 /// Reads all objects that the file builds.
 pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
