@@ -200,6 +200,7 @@ const ROOMS: [Room; 6] = [
             ("rim", &["edges", "sheet", "tree"]),
             ("parts", &["patches", "rule", "sheet", "tree"]),
             ("scan", &["edges", "tree"]),
+            ("bodies", &["edges", "mesh", "patches", "tree"]),
             ("compare", &["tree"]),
         ],
     ),

@@ -140,11 +140,14 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         )?;
     }
     if let Some(mesh) = outcome.mesh.as_ref().filter(|mesh| outcome.is_printed && mesh.volume.is_none()) {
-        let loops = counted(mesh.borders + mesh.holes, "border loop", "border loops");
-        writeln!(
-            out,
-            "warning: the mesh is open, with {loops}, and cannot be printed; --closed closes what the box cuts"
-        )?;
+        let loops = mesh.borders + mesh.holes;
+        let why = if loops == 0 {
+            "sheets of the mesh cross or touch, so that it is no manifold".to_owned()
+        } else {
+            format!("the mesh is open, with {}", counted(loops, "border loop", "border loops"))
+        };
+        let advice = if loops == 0 { "" } else { "; --closed closes what the box cuts" };
+        writeln!(out, "warning: {why}, and cannot be printed{advice}")?;
     }
     for file in &outcome.files {
         writeln!(out, "wrote {file}")?;

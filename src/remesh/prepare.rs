@@ -222,10 +222,10 @@ impl MeshSolid {
         normal.dot(p - nearest.point) < 0.0
     }
 
-    /// Also keeps every edge of the mesh sharp whose two ends lie on one of these segments, whatever
-    /// its angle. With [`MeshEdges::Rounded`] these are the only sharp edges. An edge that does not
-    /// separate two patches, such as a single one within a smooth surface, is rounded, and counted
-    /// in [`MeshKind::Parts`].
+    /// Also keeps every edge of the mesh sharp whose two ends lie on one of these segments,
+    /// whatever its angle. With [`MeshEdges::Rounded`] these are the only sharp edges. An edge that
+    /// does not separate two patches, such as a single one within a smooth surface, is rounded, and
+    /// counted in [`MeshKind::Parts`].
     ///
     /// [`MeshKind::Parts`]: crate::remesh::MeshKind::Parts
     /// [`MeshEdges::Rounded`]: crate::remesh::MeshEdges::Rounded

@@ -67,6 +67,7 @@ mod rbf;
 mod refine;
 mod relax;
 mod remesh;
+mod remesh_shapes;
 mod runs;
 mod seams;
 mod session;

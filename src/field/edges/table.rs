@@ -161,8 +161,8 @@ impl EdgeTable {
         labels.into_iter().map(|(label, (_, vertex))| (label, vertex)).collect()
     }
 
-    /// Whether a place is so near to a vertex that an edge between them has [sites](Self::sites_near)
-    /// around the place.
+    /// Whether a place is so near to a vertex that an edge between them has
+    /// [sites](Self::sites_near) around the place.
     pub(super) fn is_beside(&self, vertex: u32, p: DVec3) -> bool {
         /// Largest distance in cells: sites are up to a cell apart, so that one is within half a
         /// cell of where the edge passes.

@@ -1022,9 +1022,11 @@ export type MeshChange = {
   to_new: MeshDistances,
   /** Distances of points of the new mesh from the old one. */
   to_old: MeshDistances,
-  /** Volume of the old and the new mesh; for an open mesh it depends on the origin. */
+  /** Volume of the old and the new mesh; for an open mesh it depends on the origin. That of old
+  * bodies that intersect is the volume of their union, estimated from points on its surface to
+  * about a thousandth. */
   volume: [number, number],
-  /** Area of the old and the new mesh. */
+  /** Area of the old and the new mesh; of a union estimated, too. */
   area: [number, number],
   /** Largest distance from the sharp edges of the old mesh to the new mesh; none without sharp
   * edges. */
@@ -1077,6 +1079,8 @@ export type MeshInfo = {
   part: MeshPart | null,
   /** The grid, if it counts as a scan. */
   scan: MeshScan | null,
+  /** The bodies, if several may intersect or touch. */
+  union: MeshUnion | null,
 };
 
 /** Smooth patches between sharp edges. */
@@ -1101,6 +1105,14 @@ export type MeshScan = {
   cell: number,
   /** Width of the Gaussian in cells. */
   smooth: number,
+};
+
+/** The union of closed bodies whose boxes overlap. */
+export type MeshUnion = {
+  /** Number of bodies. */
+  bodies: number,
+  /** Sharp edges of all bodies, including those inside of others. */
+  edges: number,
 };
 
 /** A built-in model. */
@@ -1343,8 +1355,8 @@ export type Report = {
   creases: number | null,
   /** Particles at which creases meet or end; none if the surface has no edges. */
   corners: number | null,
-  /** The search by which edges were found in the values of f; none if the field tells the pieces
-  * that meet at its edges, or no edge was found. */
+  /** How the edges were found, if they were searched for in the values of f; none if the field
+  * itself says which pieces meet at its edges, and if no edge was found. */
   edges_found: string | null,
   /** Curves of particles along which patches of the surface meet without an edge; none if there
   * are none. */

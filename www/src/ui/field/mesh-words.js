@@ -29,7 +29,8 @@ export function madeOf({ part, scan, union }) {
       : '';
     return `A part with edges: ${plural(patches, 'patch', 'patches')} between ${plural(edges, 'sharp edge')} of the mesh and ${plural(corners, 'corner')}.${border}${faded}`;
   }
-  if (union) return `The union of ${plural(union.bodies, 'body', 'bodies')}, with ${plural(union.edges, 'sharp edge')} of the mesh.`;
+  if (union)
+    return `The union of ${plural(union.bodies, 'body', 'bodies')}, with ${plural(union.edges, 'sharp edge')} of the mesh.`;
   if (!scan) return '';
   const { size, cell, smooth } = scan;
   const blur = smooth > 0 ? `, smoothed by a Gaussian of ${formatSignificant(smooth, 2)} cells` : '';
