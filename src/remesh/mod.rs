@@ -8,8 +8,8 @@
 //!   edges and their minimum at concave ones (`parts`, `rule`).
 //! * *Scans and smooth shapes*. The signed distance from the mesh, computed on a grid, becomes an
 //!   image, and a spline through its voxels is f (`scan`).
-//! * *Bodies that may intersect or touch*. Each becomes a field in one of these two ways, and f is their
-//!   minimum (`bodies`).
+//! * *Bodies that may intersect or touch*. Each becomes a field in one of these two ways, and f is
+//!   their minimum (`bodies`).
 
 mod bodies;
 mod colours;
