@@ -1,5 +1,5 @@
-//! Takes a mesh apart whose closed pieces may intersect or touch each other: each becomes a field by
-//! itself, and the mesh is their union.
+//! Takes a mesh apart whose closed pieces may intersect or touch each other: each becomes a field
+//! by itself, and the mesh is their union.
 
 use super::edges::Edges;
 use super::mesh::volume;

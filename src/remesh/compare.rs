@@ -99,7 +99,8 @@ impl MeshField {
         let of_body = |k: usize| {
             let origin = bodies[k].solid().origin();
             let own = points_on(bodies[k].solid().mesh()).into_iter();
-            // A face that is flush with one of another body is in the other, seen from just outside.
+            // A face that is flush with one of another body is in that body, seen from just
+            // outside.
             let lift = OUTSIDE * self.solid().mesh().bounds().diagonal();
             let outermost = own.filter(move |own| {
                 self.is_outermost(k, origin + own.place + lift * own.vector.normalize_or_zero())
