@@ -46,6 +46,17 @@ for (const stage of await page.locator('[data-figure]').all()) {
       .evaluate((one) => /** @type {HTMLElement} */ (one).click());
     await expect(stage.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 300_000 });
   }
+  // The numbers wait for a guess.
+  if (name === 'cost') {
+    const question = page.locator('#predict-cost');
+    await question
+      .locator('button')
+      .last()
+      .evaluate((one) => /** @type {HTMLElement} */ (one).click());
+    await expect(question).toHaveAttribute('data-state', 'open');
+  }
+  // A pair says over its pictures that it is measured.
+  await expect(stage.locator('.pair-box .figure-status').filter({ hasText: /./ })).toHaveCount(0, { timeout: 60_000 });
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   await save(name ?? '', await stage.screenshot());
 }

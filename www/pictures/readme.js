@@ -12,7 +12,7 @@ import { fileURLToPath } from 'node:url';
 import { animation } from './animation.js';
 import { launch } from './browser.js';
 
-/** @import { Page } from '@playwright/test' */
+/** @import { BrowserContextOptions, Page } from '@playwright/test' */
 
 const PAGE_PX = { width: 1440, height: 840 };
 /** The page is shown with so many device pixels per pixel, and kept at that. */
@@ -142,12 +142,28 @@ async function webp(pngs, quality, columns = pngs.length) {
   return new Uint8Array(bytes);
 }
 
-for (const theme of isWanted('page') ? /** @type {const} */ (['light', 'dark']) : []) {
-  const page = await browser.newPage({ viewport: PAGE_PX, deviceScaleFactor: PAGE_SCALE, colorScheme: theme });
+/**
+ * Opens the page as on a later visit: on the first one a slider moves by itself.
+ * @param {BrowserContextOptions} options
+ */
+async function open(options) {
+  const page = await browser.newPage(options);
+  await page.addInitScript(() => localStorage.setItem('marching-particles.invited', 'on'));
   await page.goto(`${base}?backend=webgl2`);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  return page;
+}
+
+/** Waits until the picture is drawn completely, and nothing fades. @param {Page} page */
+async function atRest(page) {
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());
+  await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
+}
+
+for (const theme of isWanted('page') ? /** @type {const} */ (['light', 'dark']) : []) {
+  const page = await open({ viewport: PAGE_PX, deviceScaleFactor: PAGE_SCALE, colorScheme: theme });
   await page.evaluate((surface) => /** @type {any} */ (window).marchingParticles.set({ surface }), PAGE_SURFACE);
-  await page.waitForTimeout(500);
+  await atRest(page);
   await write(`page-${theme}.webp`, await webp([await page.screenshot()], 0.86));
   await page.close();
 }
@@ -176,9 +192,7 @@ const onlyThePicture = (page) =>
 async function strip(name, states, columns) {
   if (!isWanted(name)) return;
   for (const theme of /** @type {const} */ (['light', 'dark'])) {
-    const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
-    await page.goto(`${base}?backend=webgl2`);
-    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+    const page = await open({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
     await onlyThePicture(page);
     const frames = [];
     for (const { zoom = 1, ...state } of states) {
@@ -193,7 +207,7 @@ async function strip(name, states, columns) {
         },
         { wanted: state, zoom },
       );
-      await page.waitForTimeout(1500);
+      await atRest(page);
       frames.push(await page.screenshot());
     }
     await page.close();
@@ -230,7 +244,7 @@ async function opened(page, surface, zoom) {
     },
     { surface, zoom },
   );
-  await page.waitForTimeout(1500);
+  await atRest(page);
 }
 
 /** The tanglecube falls into eight pieces, and they join again. @param {Page} page */
@@ -281,9 +295,7 @@ async function film(name, scenes) {
     /** @type {Buffer[][]} */
     const taken = [];
     for (const scene of scenes) {
-      const page = await browser.newPage({ viewport: LEVEL_PX, colorScheme: theme });
-      await page.goto(`${base}?backend=webgl2`);
-      await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+      const page = await open({ viewport: LEVEL_PX, colorScheme: theme });
       await onlyThePicture(page);
       const moveTo = await scene(page);
       const pictures = [];
