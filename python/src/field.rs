@@ -156,12 +156,9 @@ impl Field {
         is_closed: bool,
     ) -> PyResult<(Self, String)> {
         py.detach(|| {
-            let content = std::fs::read(&path)?;
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let beside =
-                |name: &str| std::fs::read(path.with_file_name(name)).map_err(|error| error.to_string());
-            let image = Image::read(&name, content, beside)
-                .map_err(|error| PyValueError::new_err(error.to_string()))?;
+            // A file that is missing is a FileNotFoundError.
+            std::fs::File::open(&path)?;
+            let image = Image::open(&path).map_err(|error| PyValueError::new_err(error.to_string()))?;
             Self::imaged(&image, &ImageChoice { iso, label, smooth, is_dark_inside, is_closed })
         })
     }

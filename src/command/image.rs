@@ -7,7 +7,6 @@ use marching_particles::Image;
 use marching_particles::image::{ImageChoice, ImageField, ImageSurface, RawVoxels, VoxelType};
 use marching_particles::math::{grouped, significant};
 use serde::Serialize;
-use std::path::Path;
 
 /// The image and its surface, for the report.
 #[derive(Clone, Debug, Serialize)]
@@ -48,13 +47,15 @@ pub(crate) fn of_arguments(arguments: &SurfaceArguments) -> Result<Option<(Image
     let Some(path) = &arguments.image else { return Ok(None) };
     let unreadable = |error| Failure::Unreadable { path: path.clone(), error };
     let wrong = |error: &dyn std::fmt::Display| Failure::Usage(format!("{}: {error}", path.display()));
-    let bytes = std::fs::read(path).map_err(unreadable)?;
+    std::fs::File::open(path).map_err(unreadable)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let image = match &arguments.raw {
-        Some(raw) => Image::read_raw(bytes, raw),
-        None => Image::read(&name, bytes, |name| read_beside(path, name)),
+    let mut image = match &arguments.raw {
+        Some(raw) => {
+            let bytes = std::fs::read(path).map_err(unreadable)?;
+            Image::read_raw(bytes, raw).map_err(|error| wrong(&error))?
+        }
+        None => Image::open(path).map_err(|error| Failure::Usage(error.to_string()))?,
     };
-    let mut image = image.map_err(|error| wrong(&error))?;
     if let Some(VoxelSize(spacing)) = arguments.voxel_size {
         image = image.with_spacing(spacing).map_err(|error| wrong(&error))?;
     }
@@ -149,14 +150,6 @@ pub(crate) fn raw(text: &str) -> Result<RawVoxels, String> {
         }
     }
     Ok(raw)
-}
-
-/// Reads a file by name from the folder of another one. A header must not name files elsewhere.
-fn read_beside(path: &Path, name: &str) -> Result<Vec<u8>, String> {
-    if Path::new(name).components().count() != 1 || Path::new(name).file_name().is_none() {
-        return Err("it is not in the same folder".to_owned());
-    }
-    std::fs::read(path.with_file_name(name)).map_err(|error| error.to_string())
 }
 
 impl ImageInfo {

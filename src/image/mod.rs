@@ -24,6 +24,7 @@ pub use choice::{ImageChoice, ImageSurface};
 pub use field::ImageField;
 pub use labels::{DEFAULT_LABEL_WIDTH, Label};
 pub use placement::Placement;
+pub(crate) use read::opened;
 pub use read::{ImageFormat, ImageOutline, ImageReadError, MAX_IMAGE_BYTES, RawVoxels};
 pub use section::Section;
 pub(crate) use smooth::blur;

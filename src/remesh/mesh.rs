@@ -1,10 +1,13 @@
 //! Triangle meshes: vertices, faces, area and volume.
 
 use super::{MAX_TRIANGLES, MeshError};
+use crate::image::opened;
 use crate::math::Bounds;
 use crate::pointcloud::read::{FileMesh, Reader};
 use crate::slices;
 use glam::DVec3;
+use std::io;
+use std::path::Path;
 
 /// A triangle mesh, as a file or a program gives it.
 ///
@@ -74,6 +77,16 @@ impl TriangleMesh {
             return Err(MeshError::Colours { count: colours.len(), vertices: self.vertices.len() });
         }
         Ok(Self { colours, ..self })
+    }
+
+    /// Opens the file of a mesh: see [`TriangleMesh::read`].
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be opened; as for [`TriangleMesh::read`] with
+    /// [`io::ErrorKind::InvalidData`]. The message begins with the path.
+    pub fn open(path: impl AsRef<Path>) -> io::Result<Self> {
+        opened(path.as_ref(), Self::read)
     }
 
     /// Reads a mesh from an STL, OBJ, PLY, OFF, GLB or 3MF file; the content decides which.

@@ -51,6 +51,7 @@ fn sheets_as_near_as_single_precision_tells_apart_are_sampled_each() {
             let context = format!("{formula}, {:?}: {:?}", settings.sampling, report.warnings);
             assert_eq!(report.proof.search, Search::Proven, "{context}");
             assert_eq!(report.proof.components, components, "{context}");
+            assert_eq!(report.proof.singular_points, Some(0), "{context}");
             assert_eq!(report.measures.quality.map(|q| q.connectivity.euler), Some(euler), "{context}");
             assert!(!says(&report, "without changing its sign"), "{context}");
         }

@@ -139,15 +139,14 @@ fn programs() -> Vec<(Program, &'static str)> {
         program! { particles:
             use marching_particles::{Image, Settings, sample};
 
-            let bytes = std::fs::read("scan.npy")?;
-            let image = Image::read("scan.npy", bytes, |name| Err(format!("there is no {name}")))?;
+            let image = Image::open("scan.npy")?;
             let particles = sample(image.at(100.0)?, &Settings::with_count(3_000))?;
         },
         program! { particles:
             use marching_particles::remesh::MeshOptions;
             use marching_particles::{Settings, TriangleMesh, sample};
 
-            let solid = TriangleMesh::read("part.stl", std::fs::read("part.stl")?)?.solid()?;
+            let solid = TriangleMesh::open("part.stl")?.solid()?;
             let field = solid.field(&MeshOptions::default())?;
             let particles = sample(field, &Settings::with_count(3_000).refined())?;
             particles.save("even.stl")?;

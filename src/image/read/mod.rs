@@ -20,6 +20,8 @@ use crate::slices;
 use core::fmt::{self, Display, Formatter};
 use glam::{DMat3, DVec3};
 use header::{quoted, wrong};
+use std::io;
+use std::path::Path;
 use zip::Unpacked;
 
 /// Upper limit on the size of the voxels of a file, in bytes: 1024³ voxels of 16 bits.
@@ -163,7 +165,47 @@ enum Source {
     Beside(String),
 }
 
+/// Reads a file by its name and content. The error has the path.
+pub(crate) fn opened<T, E: Display>(
+    path: &Path,
+    read: impl FnOnce(&str, Vec<u8>) -> Result<T, E>,
+) -> io::Result<T> {
+    let bytes = std::fs::read(path).map_err(|error| {
+        io::Error::new(error.kind(), format!("{} could not be read: {error}", path.display()))
+    })?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    read(&name, bytes)
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, format!("{}: {error}", path.display())))
+}
+
 impl Image {
+    /// Opens a file: see [`Image::read`]. If its voxels are in another file, that is read from the
+    /// same folder.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be opened; as for [`Image::read`] with [`io::ErrorKind::InvalidData`]. The
+    /// message begins with the path.
+    ///
+    /// ```no_run
+    /// use marching_particles::{Image, Settings, sample};
+    ///
+    /// let bone = Image::open("scan.nii.gz")?.at(1_200.0)?;
+    /// sample(bone, &Settings::with_count(20_000))?.save("bone.ply")?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn open(path: impl AsRef<Path>) -> io::Result<Self> {
+        let path = path.as_ref();
+        let beside = |name: &str| {
+            // A file names no other folder.
+            if Path::new(name).components().count() != 1 || Path::new(name).file_name().is_none() {
+                return Err("it is not in the same folder".to_owned());
+            }
+            std::fs::read(path.with_file_name(name)).map_err(|error| error.to_string())
+        };
+        opened(path, |name, bytes| Self::read(name, bytes, beside))
+    }
+
     /// Reads a file: NIfTI-1 or -2 (`.nii`, `.nii.gz`, or `.hdr` with `.img`), NRRD (`.nrrd`,
     /// `.nhdr`), NumPy (`.npy`), MetaImage (`.mha`, `.mhd`), Gaussian cube (`.cube`) or a stack of
     /// TIFF pictures (`.tif`). The content decides, not the name. If a file has several volumes, or

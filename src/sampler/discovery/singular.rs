@@ -314,7 +314,10 @@ pub(crate) fn singular_point(field: &mut dyn Evaluator, start: DVec3, reach: f64
         let vanishes = size <= SMALL.sqrt() * largest_sq.sqrt();
         let is_alone = !vanishes && hessian.determinant().abs() > SMALL * size * size * size;
         let end = ENDS[usize::from(!is_alone)];
-        let has_two_signs = !vanishes && has_two_signs(&jet.hessian);
+        // Half-way between two near sheets f has no gradient, but a minimum. What is left of the
+        // gradient beside it makes the second derivatives along the sheets differ from zero.
+        let left = jet.gradient.length() / reach;
+        let has_two_signs = !vanishes && has_two_signs(&jet.hessian, left.max(SMALL * size));
         let is_zero = value <= end * end * most
             || value <= LARGEST_VALUE * most && (has_two_signs || may_be_zero(field, p));
         // The sum of the products of two eigenvalues.
@@ -324,9 +327,9 @@ pub(crate) fn singular_point(field: &mut dyn Evaluator, start: DVec3, reach: f64
     })
 }
 
-/// Whether the second derivatives along some directions are positive, and along others negative.
-fn has_two_signs(hessian: &Sym3<f64>) -> bool {
-    let least = SMALL * size_sq(&matrix(hessian)).sqrt();
+/// Whether the second derivatives along some directions are above `least`, and along others below
+/// −`least`.
+fn has_two_signs(hessian: &Sym3<f64>, least: f64) -> bool {
     extreme_directions(hessian)
         .is_some_and(|[up, down]| up.dot(hessian.apply(up)) > least && down.dot(hessian.apply(down)) < -least)
 }
