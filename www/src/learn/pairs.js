@@ -167,12 +167,15 @@ function randomOf(text) {
 /** A surface of higher genus bends too much within 2r, and its run takes long. */
 const MOST_GENUS = 3;
 
+/** Surfaces that the lesson shows before, by their identifiers in the gallery. */
+const SHOWN = ['ellipsoid', 'torus'];
+
 /**
- * The gallery surfaces for random pairs: closed, in one piece and without self-intersections.
+ * The gallery surfaces for random pairs: closed, in one piece, without self-intersections, and not shown before.
  * @param {readonly SurfaceInfo[]} gallery
  */
 export const drawable = (gallery) =>
-  gallery.filter(({ genus, formula }) => formula && genus !== null && genus <= MOST_GENUS);
+  gallery.filter(({ id, genus, formula }) => formula && genus !== null && genus <= MOST_GENUS && !SHOWN.includes(id));
 
 /** The share of pairs that are meant to be ties. */
 const TIES = 0.3;
@@ -214,6 +217,7 @@ export async function drawn(lab, surfaces, series, number) {
  * @param {Awaited<ReturnType<typeof drawn>>} of @returns {Question<readonly Score[]>}
  */
 export function questionOf({ pair, purpose: { key, story, why } }) {
+  const isOfSizes = pair.sides.some(({ isAdaptive }) => isAdaptive);
   const right = (/** @type {readonly Score[]} */ scores) => winnerOf(scores, key);
   const { name, writeChance, write } = rowOf(key);
   return {
@@ -227,8 +231,9 @@ export function questionOf({ pair, purpose: { key, story, why } }) {
     ],
     ask: (lab) => scoresOf(lab, pair),
     words: (scores) => [
-      `${why} ${name}: ${written(key, scores[0])} in A, ${written(key, scores[1])} in B.`,
+      `This is the surface ${pair.name}. ${why} ${name}: ${written(key, scores[0])} in A, ${written(key, scores[1])} in B.`,
       `Up to ${(writeChance ?? write)(Number(chanceOf(rowOf(key), scores)))} of a difference may be chance.`,
+      ...(isOfSizes ? ['Both are compared with the ideal of one size.'] : []),
     ],
   };
 }

@@ -52,8 +52,8 @@ export async function draws({ lab, stops, series }) {
   const count = signal(Number(stops.more(COUNT) ?? 0));
   const status = signal('');
   const isBusy = signal(false);
-  /** @param {number} number */
-  async function go(number) {
+  /** @param {number} number @param {boolean} [isShown]  it is scrolled to */
+  async function go(number, isShown = true) {
     isBusy.value = true;
     status.value = 'A pair is being drawn';
     try {
@@ -63,6 +63,8 @@ export async function draws({ lab, stops, series }) {
       const host = h('div', { class: 'predict', id }, h('div', { class: 'stage stage-pair' }, pair));
       mountQuestion(host, id, questionOf(found), { lab, stops });
       fill(place, host);
+      // The card before it may have been much longer.
+      if (isShown) host.scrollIntoView({ block: 'start' });
       at.value = number;
       count.value = Math.max(count.peek(), number + 1);
       stops.keepMore(AT, number);
@@ -88,7 +90,7 @@ export async function draws({ lab, stops, series }) {
       },
       words,
     );
-  if (count.peek() > 0) await go(Number(stops.more(AT)));
+  if (count.peek() > 0) await go(Number(stops.more(AT)), false);
   return [
     h(
       'p',
