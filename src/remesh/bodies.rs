@@ -10,7 +10,8 @@ use crate::field::union;
 use crate::math::{Bounds, NONE};
 use glam::DVec3;
 
-/// Most bodies: a value of their union costs a value of each.
+/// Largest number of bodies that are united: evaluating their union at a point evaluates every body
+/// there.
 const MOST: usize = 32;
 
 impl MeshSolid {

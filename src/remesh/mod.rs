@@ -236,7 +236,8 @@ pub enum MeshKind {
         /// Width of the Gaussian in cells.
         smooth: f64,
     },
-    /// The union of closed bodies whose boxes overlap, each of which became a field by itself.
+    /// Several closed bodies whose boxes overlap: each became a field by itself, and f is the
+    /// minimum of these.
     Union {
         /// Number of bodies.
         bodies: usize,
@@ -412,7 +413,7 @@ impl MeshField {
         }
     }
 
-    /// The bodies of which this is the union; none if it is none.
+    /// The fields of the bodies that this field unites; empty if it is the field of one body.
     fn bodies(&self) -> &[Self] {
         if let Function::Union { bodies, .. } = &self.function { bodies } else { &[] }
     }
