@@ -1,7 +1,6 @@
 //! The fields that can be sampled: a formula, functions of Python, or a surface through points.
 
 use crate::errors;
-use marching_particles::export::COLOURS;
 use marching_particles::field::{BatchField, BatchPiecewise, Combined, IntoField};
 use marching_particles::glam::DVec3;
 use marching_particles::image::{AxisOrder, ImageChoice, ImageError, VoxelType};
@@ -269,18 +268,6 @@ impl Mesh {
         let faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
         let change = py.detach(|| self.0.compare(&points, &faces));
         Ok(serde_json::to_string(&change).expect("numbers are data"))
-    }
-
-    /// The parts of its colour as functions of place, by their names; empty if it has none.
-    fn colours(&self) -> Vec<(&'static str, Field)> {
-        let solid = self.0.solid();
-        let channels = if solid.has_colours() { COLOURS.as_slice() } else { &[] };
-        let part = |(channel, &name): (usize, &&'static str)| {
-            let solid = solid.clone();
-            let part = move |p: DVec3| solid.colour_at(p).map_or(f64::NAN, |colour| colour[channel].into());
-            (name, Field::new(Arc::new(part.into_field()), None))
-        };
-        channels.iter().enumerate().map(part).collect()
     }
 }
 

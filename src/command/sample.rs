@@ -11,13 +11,11 @@ use crate::surface::{Origin, choose, fit, read_text};
 use crate::wall::Wall;
 use crate::{code, summary};
 use indicatif::ProgressBar;
-use marching_particles::export::{
-    COLOURS, MeshFile, ParticleFile, Placement, RecordText, VERTICES, Vertices,
-};
+use marching_particles::export::{MeshFile, ParticleFile, Placement, RecordText, VERTICES, Vertices};
 use marching_particles::math::grouped;
 use marching_particles::run::{Reach, Value};
 use marching_particles::sampler::{COUNT_ROOM, Phase, SizeMode};
-use marching_particles::session::{Fault, FileRecord, Session, Source, ValueText, colour_values};
+use marching_particles::session::{Fault, FileRecord, Session, Source, ValueText};
 use marching_particles::{Bounds, Error, Format, MeshFormat, Run, Settings, StopReason};
 use std::borrow::Cow;
 use std::io::Write;
@@ -183,14 +181,6 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     }
     if let Some(made) = &mut made {
         made.values = ValueText::of(sample.values());
-    }
-    if let Origin::Mesh(mesh) = &origin
-        && arguments.values.iter().all(|own| !COLOURS.contains(&&*own.name))
-    {
-        for (name, value) in colour_values(mesh.0.solid()) {
-            // Neither the names nor a function without errors can be refused.
-            let _ = sample.add_value(&*field, name, &value);
-        }
     }
     let bodies = if is_joined { sample.mesh().bodies(sample.particles()) } else { Vec::new() };
     let placement = arguments.placement(arguments.bodies().size(&bodies).max_element());

@@ -22,7 +22,7 @@ pub use vertices::{VERTICES, VerticesChoice};
 pub(crate) use file::{File, FileContent};
 
 use crate::particles::Particles;
-use crate::quality;
+use crate::quality::{self, CHANNELS};
 use core::fmt;
 use core::ops::Range;
 use glam::DVec3;
@@ -243,20 +243,17 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> Vec<&'sta
     COLUMNS.iter().filter(is_there).collect()
 }
 
-/// Names of added columns that are the parts of a colour in sRGB, from 0 to 1. PLY has them in
-/// eight bits and GLB as the colours of its vertices, as programs expect.
-pub const COLOURS: [&str; 3] = ["red", "green", "blue"];
-
-/// The added columns of a colour, if it is complete.
+/// The added columns of a colour, if it is complete. PLY has them in eight bits and GLB as the
+/// colours of its vertices, as programs expect.
 fn colour_columns(measured: &quality::Measurements) -> Option<[&quality::NamedValues; 3]> {
     let column = |name: &&str| measured.values.iter().find(|added| added.name == **name);
-    let [red, green, blue] = &COLOURS;
+    let [red, green, blue] = &CHANNELS;
     Some([column(red)?, column(green)?, column(blue)?])
 }
 
 /// Whether an added column is a part of a colour.
 fn is_of_colour(measured: &quality::Measurements, name: &str) -> bool {
-    COLOURS.contains(&name) && colour_columns(measured).is_some()
+    CHANNELS.contains(&name) && colour_columns(measured).is_some()
 }
 
 /// The type of each added column in PLY, where the others have this type.

@@ -25,6 +25,7 @@ pub use crate::math::{Interval, Sym3};
 pub use crate::slices::{MaybeSend, MaybeSync};
 pub use combined::{Combined, difference, intersection, offset, smooth_union, union};
 pub use evaluator::{Bounded, Evaluator, Frame, Pieces};
+pub use formula::Value;
 pub use function::{BatchField, FnField};
 pub use given::{FieldError, IntoField, IntoFields, SharedError, kind};
 pub use piecewise::{BatchPiecewise, PiecewiseFn};
@@ -180,6 +181,13 @@ pub trait Field: MaybeSend + MaybeSync {
     #[doc(hidden)]
     fn is_smooth(&self) -> bool {
         false
+    }
+
+    /// Values that the field gives to its particles, with the names of their columns: the colours
+    /// of a mesh or of a formula.
+    #[doc(hidden)]
+    fn columns(&self) -> Vec<(&'static str, Value)> {
+        Vec::new()
     }
 
     /// The field that replaces this one as an operand of a [combination](union), if any: the
@@ -340,6 +348,10 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
 
     fn is_smooth(&self) -> bool {
         (**self).is_smooth()
+    }
+
+    fn columns(&self) -> Vec<(&'static str, Value)> {
+        (**self).columns()
     }
 
     fn operand(&self) -> Option<Arc<dyn Field>> {

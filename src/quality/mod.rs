@@ -47,6 +47,7 @@ mod sizes;
 mod spacing;
 mod triangles;
 
+pub(crate) use crate::field::formula::CHANNELS;
 pub use figures::Figures;
 #[doc(hidden)]
 pub use options::MeasureOptions;

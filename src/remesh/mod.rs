@@ -30,7 +30,7 @@ pub use compare::{MeshChange, MeshDistances};
 pub use mesh::TriangleMesh;
 pub use prepare::{MeshRepairs, MeshSolid};
 
-use crate::field::{Combined, Evaluator, Facts, Field, Frame, Jet, Piecewise};
+use crate::field::{Combined, Evaluator, Facts, Field, Frame, Jet, Piecewise, Value};
 use crate::math::{counted, grouped, significant};
 use crate::pointcloud::read::ReadError;
 use crate::slices::{self, pause};
@@ -463,6 +463,10 @@ impl Field for MeshField {
 
     fn is_smooth(&self) -> bool {
         self.function().is_smooth()
+    }
+
+    fn columns(&self) -> Vec<(&'static str, Value)> {
+        self.solid.colour_values()
     }
 
     fn operand(&self) -> Option<Arc<dyn Field>> {

@@ -5,6 +5,8 @@ use super::edges::{Edges, ends_of};
 use super::mesh::volume;
 use super::tree::Tree;
 use super::{MeshError, TriangleMesh};
+use crate::field::formula::CHANNELS;
+use crate::field::{IntoField, Value};
 use crate::math::{Bounds, IndexTable, counted, hash};
 use crate::slices::{self, pause};
 use core::cell::OnceCell;
@@ -271,6 +273,18 @@ impl MeshSolid {
     #[must_use]
     pub fn colour_at(&self, p: DVec3) -> Option<[f32; 3]> {
         Some(self.colours.as_ref()?.at(p - self.origin))
+    }
+
+    /// The [colour](Self::colour_at) as a value at the particles for each of its parts; none if the
+    /// mesh has no colours.
+    pub(super) fn colour_values(&self) -> Vec<(&'static str, Value)> {
+        let Some(colours) = &self.colours else { return Vec::new() };
+        let value = |(channel, &name): (usize, &&'static str)| {
+            let (colours, origin) = (Arc::clone(colours), self.origin);
+            let part = move |p: DVec3| f64::from(colours.at(p - origin)[channel]);
+            (name, Value::of_field(Arc::new(part.into_field())))
+        };
+        CHANNELS.iter().enumerate().map(value).collect()
     }
 
     /// Whether both are copies of the same mesh, with the same marks.

@@ -21,10 +21,11 @@ pub use mesh::{MeshAnswer, MeshComponent};
 pub use report::{Cut, EdgeSearch, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
 pub use severity::Severity;
-pub use values::{Value, ValueError};
+pub use values::ValueError;
 pub use warning::Warning;
 
 pub use crate::extent::Reach;
+pub use crate::field::Value;
 pub use crate::math::BoxError;
 
 use crate::differential::{self, Curvature};

@@ -433,6 +433,7 @@ impl<'f> RunState<'f> {
 
     /// The report, with the present measurements.
     pub(super) fn reported(&mut self, field: &dyn Field) -> Report {
+        self.add_own_values(field);
         let is_overflowing = self.sampler.is_open_by_overflow(&self.field.function(field));
         let blur = self.sampler.blur(&self.field.function(field));
         let particles = self.sampler.particles();

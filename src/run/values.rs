@@ -1,52 +1,18 @@
 //! Values at the particles, by formulas and functions: more columns for files and programs.
 
-use super::{Run, Sample};
+use super::{Run, RunState, Sample};
 use crate::differential::{Curvature, curvatures};
 use crate::export::COLUMNS;
-use crate::field::formula::{Formula, FormulaError, Noun, Parameter};
-use crate::field::{BATCH, Field, FieldError, Frame, IntoField};
+use crate::field::formula::{QUANTITIES, Source};
+use crate::field::{BATCH, Field, FieldError, Frame, IntoField, Value};
 use crate::math::unkey;
 use crate::mesh::triangulation::Triangulation;
 use crate::particles::Particles;
 use crate::quality::NamedValues;
 use crate::spatial::tree::Tree;
 
-use core::fmt::{self, Debug, Formatter};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
-
-/// A number at each particle, by a formula or a function of position.
-///
-/// ```
-/// use marching_particles::run::Value;
-/// use marching_particles::{Format, Formula, Settings, sample};
-///
-/// let torus = Formula::parse("(hypot(x, y) - 1)^2 + z^2 = 0.16")?;
-/// let mut sample = sample(&torus, &Settings::with_count(2_000))?;
-/// sample.add_value(&torus, "mean_curvature", &Value::parse("(k_1 + k_2)/2")?)?;
-/// sample.add_value(&torus, "height", &Value::by(|p: marching_particles::glam::DVec3| p.z))?;
-/// let mut file = Vec::new();
-/// sample.write(Format::Csv, &mut file)?;
-/// assert!(file.windows(21).any(|text| text == b"mean_curvature,height"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Clone)]
-pub struct Value(Source);
-
-#[derive(Clone)]
-enum Source {
-    Formula(Box<Formula>),
-    Function(Arc<dyn Field>),
-}
-
-impl Debug for Value {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match &self.0 {
-            Source::Formula(formula) => f.debug_tuple("Value").field(&formula.text()).finish(),
-            Source::Function(_) => f.write_str("Value(a function)"),
-        }
-    }
-}
 
 /// Why values cannot be added to a sample.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -65,35 +31,24 @@ pub enum ValueError {
     Function(FieldError),
 }
 
-/// How errors name a value.
-const NOUN: Noun = Noun {
-    name: "value",
-    unknown: "A particle has no",
-    others: "the quantities of a particle",
-    examples: ["1", "0.5 (k_1 + k_2)", "if(z > 0, 1, 0)"],
-};
-
-/// A quantity of a particle: its name in formulas, and how it is read.
-type Quantity = (&'static str, fn(&At) -> f32);
-
-const QUANTITIES: [Quantity; 12] = [
-    ("n_x", |at| at.particles.normal[at.row].x),
-    ("n_y", |at| at.particles.normal[at.row].y),
-    ("n_z", |at| at.particles.normal[at.row].z),
-    ("k_1", |at| at.curvature.k1),
-    ("k_2", |at| at.curvature.k2),
-    ("d_x", |at| at.curvature.direction.x),
-    ("d_y", |at| at.curvature.direction.y),
-    ("d_z", |at| at.curvature.direction.z),
-    ("radius", |at| at.particles.radius[at.row]),
-    ("level", |at| at.particles.level[at.row] as f32),
-    ("area", |at| at.area),
-    ("edge", |at| at.edge),
+/// How each of the [quantities](QUANTITIES) is read.
+const READ: [fn(&At) -> f32; QUANTITIES.len()] = [
+    |at| at.particles.normal[at.row].x,
+    |at| at.particles.normal[at.row].y,
+    |at| at.particles.normal[at.row].z,
+    |at| at.curvature.k1,
+    |at| at.curvature.k2,
+    |at| at.curvature.direction.x,
+    |at| at.curvature.direction.y,
+    |at| at.curvature.direction.z,
+    |at| at.particles.radius[at.row],
+    |at| at.particles.level[at.row] as f32,
+    |at| at.area,
+    |at| at.edge,
 ];
 
-/// Quantities that need the second derivatives, the mesh, or the sharp edges.
+/// Quantities that need the second derivatives, or the sharp edges.
 const CURVED: [&str; 5] = ["k_1", "k_2", "d_x", "d_y", "d_z"];
-const AREA: &str = "area";
 const EDGE: &str = "edge";
 
 /// Properties of a row of the particles.
@@ -106,72 +61,21 @@ struct At<'a> {
 }
 
 impl Value {
-    /// The value of a formula of the position x, y, z and of
-    ///
-    /// | name | quantity |
-    /// |---|---|
-    /// | `n_x`, `n_y`, `n_z` | the unit normal, along the gradient of f |
-    /// | `k_1`, `k_2` | principal curvatures, the larger one first; positive where the surface bends away from its normal, in inverse units of length |
-    /// | `d_x`, `d_y`, `d_z` | unit principal direction of `k_1`, of either sign |
-    /// | `radius` | repulsion radius |
-    /// | `level` | generation level |
-    /// | `edge` | distance to the nearest sharp edge or rim; NaN if there is none |
-    /// | `area` | share of the surface: a third of the triangles of the mesh around it, which adds up to the area of the mesh |
-    ///
-    /// So `0.5 (k_1 + k_2)` is the mean curvature and `k_1 k_2` the Gaussian one. On an edge, where
-    /// there is no curvature, formulas that use it give NaN.
-    ///
-    /// # Errors
-    ///
-    /// Any of [`FormulaErrorKind`](crate::field::formula::FormulaErrorKind), with its span in bytes
-    /// of `text`: `UnknownName` for another name.
-    pub fn parse(text: &str) -> Result<Self, FormulaError> {
-        Self::of_formula(text, &[])
-    }
-
-    /// [`Value::parse`], with the values of more names.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Value::parse`].
-    #[doc(hidden)]
-    pub fn of_formula(text: &str, parameters: &[Parameter]) -> Result<Self, FormulaError> {
-        let is_own = |parameter: &&Parameter| QUANTITIES.iter().all(|(name, _)| *name != parameter.name);
-        let mut known: Vec<Parameter> = parameters.iter().filter(is_own).cloned().collect();
-        known.extend(QUANTITIES.iter().map(|(name, _)| Parameter::automatic(name)));
-        Ok(Self(Source::Formula(Box::new(Formula::expression(text, &known, &NOUN)?))))
-    }
-
     /// The value of a function of position: anything that can be [sampled](IntoField), such as a
     /// function of a point or one of a batch of points that may fail. It is evaluated once for each
     /// row of the particles.
     pub fn by<Kind>(function: impl IntoField<Kind, Field: 'static>) -> Self {
-        Self(Source::Function(Arc::new(function.into_field())))
+        Self::of_field(Arc::new(function.into_field()))
     }
+}
 
-    /// Whether the value needs the mesh, for the area.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn needs_mesh(&self) -> bool {
-        self.takes(&[AREA])
-    }
-
-    /// The column of this value.
-    fn named(&self, name: &str, values: Vec<f32>) -> NamedValues {
-        let formula = match &self.0 {
-            Source::Formula(formula) => Some(formula.text().to_owned()),
-            Source::Function(_) => None,
-        };
-        NamedValues { name: name.to_owned(), formula, values }
-    }
-
-    /// Whether the formula uses one of these quantities.
-    fn takes(&self, names: &[&str]) -> bool {
-        match &self.0 {
-            Source::Formula(formula) => formula.parameters().iter().any(|own| names.contains(&&*own.name)),
-            Source::Function(_) => false,
-        }
-    }
+/// The column of a value.
+fn named(value: &Value, name: &str, values: Vec<f32>) -> NamedValues {
+    let formula = match &value.0 {
+        Source::Formula(formula) => Some(formula.text().to_owned()),
+        Source::Function(_) => None,
+    };
+    NamedValues { name: name.to_owned(), formula, values }
 }
 
 impl Sample {
@@ -189,10 +93,15 @@ impl Sample {
         name: &str,
         value: &Value,
     ) -> Result<(), ValueError> {
+        let field = field.into_field();
+        // A colour that the field gives yields to that of the program.
+        if field.columns().iter().any(|(own, _)| *own == name) {
+            self.measured_mut().values.retain(|column| column.name != name || column.formula.is_some());
+        }
         check_name(name, self.values().iter())?;
         let mesh = value.needs_mesh().then(|| self.mesh());
-        let values = column(value, self.particles(), &field.into_field(), self.bounds().diagonal(), mesh)?;
-        self.measured_mut().values.push(value.named(name, values));
+        let values = column(value, self.particles(), &field, self.bounds().diagonal(), mesh)?;
+        self.measured_mut().values.push(named(value, name, values));
         Ok(())
     }
 
@@ -214,8 +123,22 @@ impl<'f, F: Field + 'f> Run<'f, F> {
         let values = column(value, self.particles(), self.field(), self.bounds().diagonal(), self.mesh())?;
         let all = &mut self.measured_mut().values;
         all.retain(is_other);
-        all.push(value.named(name, values));
+        all.push(named(value, name, values));
         Ok(())
+    }
+}
+
+impl RunState<'_> {
+    /// Adds the [columns](Field::columns) of the field itself, unless they are there.
+    pub(super) fn add_own_values(&mut self, field: &dyn Field) {
+        for (name, value) in field.columns() {
+            if self.measuring.measured.values.iter().all(|column| column.name != name)
+                && let Ok(values) = column(&value, self.particles(), field, self.bounds.diagonal(), None)
+            {
+                let column = NamedValues { name: name.to_owned(), formula: None, values };
+                self.measuring.measured.values.push(column);
+            }
+        }
     }
 }
 
@@ -263,8 +186,7 @@ fn column(
     }
     let area = mesh.filter(|_| value.needs_mesh()).map_or_else(Vec::new, |mesh| areas(mesh, particles));
     let edge = if value.takes(&[EDGE]) { distances_to_edges(particles) } else { Vec::new() };
-    let is_taken = |(name, _): &&Quantity| value.takes(&[name]);
-    let taken: Vec<&Quantity> = QUANTITIES.iter().filter(is_taken).collect();
+    let taken: Vec<_> = QUANTITIES.iter().zip(READ).filter(|(name, _)| value.takes(&[name])).collect();
     let mut formula = formula.clone();
     let value_at = |(row, place): (usize, DVec3)| {
         let curvature = curvature.get(row).copied().unwrap_or_default();

@@ -161,6 +161,8 @@ pub enum ColourMode {
     Normal,
     /// A value by a formula.
     Value,
+    /// The colours that the surface has.
+    Own,
     /// No quantity: all particles have one colour.
     Plain,
 }
@@ -414,6 +416,12 @@ const COLOURS: &[Colour] = &[
         id: ColourMode::Value,
         label: "A formula",
         help: "A value by a formula of x, y, z and of the particle: n_x, n_y, n_z, k_1, k_2, d_x, d_y, d_z, radius, level, area, edge. Files have it as the column value.",
+        unit: "",
+    },
+    Colour {
+        id: ColourMode::Own,
+        label: "Its own colours",
+        help: "Those of an opened mesh, or of the formula: colour = … gives a number, c_rgb = (…, …, …) red, green and blue from 0 to 1.",
         unit: "",
     },
     Colour { id: ColourMode::Plain, label: "Plain", help: "One colour.", unit: "" },

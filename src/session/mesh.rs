@@ -84,21 +84,20 @@ pub struct MeshScan {
 }
 
 #[cfg(all(feature = "images", feature = "points"))]
-pub(super) use with_meshes::{Comparison, MeshSurface};
+pub use with_meshes::OpenedMesh;
 #[cfg(all(feature = "images", feature = "points"))]
-pub use with_meshes::{OpenedMesh, colour_values};
+pub(super) use with_meshes::{Comparison, MeshSurface};
 
 #[cfg(all(feature = "images", feature = "points"))]
 mod with_meshes {
     use super::super::opened::{Surface, Wanted};
     use super::super::{FieldAnswer, FieldRequest, Session, Source};
     use super::{MeshBorder, MeshInfo, MeshPart, MeshScan, MeshUnion};
-    use crate::export::{COLOURS, MeshBuffers, Vertices};
+    use crate::export::{MeshBuffers, Vertices};
     use crate::field::formula::Parameter;
     use crate::remesh::{
         MeshChange, MeshEdges, MeshError, MeshField, MeshKind, MeshOptions, MeshRim, MeshSolid, TriangleMesh,
     };
-    use crate::run::Value;
     use crate::session::{Fault, FaultKind};
     use crate::slices::{self, Work};
     use glam::DVec3;
@@ -107,19 +106,6 @@ mod with_meshes {
 
     /// The names of the choices among the parameters of a request.
     const NAMES: [&str; 3] = ["edges", "borders", "smooth"];
-
-    /// The colours of a mesh as [values](Value) of particles, with the names of their columns:
-    /// `red`, `green` and `blue`, from 0 to 1. Empty if the mesh has none.
-    #[must_use]
-    pub fn colour_values(solid: &MeshSolid) -> Vec<(&'static str, Value)> {
-        let channels = if solid.has_colours() { COLOURS.as_slice() } else { &[] };
-        let value = |(channel, &name): (usize, &&'static str)| {
-            let solid = solid.clone();
-            let part = move |p: DVec3| solid.colour_at(p).map_or(f64::NAN, |colour| colour[channel].into());
-            (name, Value::by(part))
-        };
-        channels.iter().enumerate().map(value).collect()
-    }
 
     /// An opened triangle mesh, repaired once for all choices.
     #[derive(Clone, Debug)]
@@ -327,16 +313,6 @@ mod with_meshes {
         /// [`Session::make_image`] for a mesh.
         pub fn make_mesh(&mut self, mesh: &OpenedMesh, request: &FieldRequest, budget: u32) -> f64 {
             self.make(Wanted::Mesh(mesh.clone(), choice_of(&request.parameters)), budget)
-        }
-
-        /// Adds the colours of the opened mesh to the particles, unless a formula uses its surface.
-        pub(in super::super) fn add_colours(&mut self) {
-            let Source::Opened(opened) = self.run.field() else { return };
-            let Some(Surface::Mesh(surface)) = opened.alone() else { return };
-            for (name, value) in colour_values(surface.field.solid()) {
-                // Neither the names nor a function without errors can be refused.
-                let _ = self.run.add_value(name, &value);
-            }
         }
 
         /// Compares the mesh that [`Session::join`] has made with the opened one, with up to

@@ -20,9 +20,9 @@ pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, d
 pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 pub use image::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
-pub use mesh::{MeshBorder, MeshInfo, MeshPart, MeshScan, MeshUnion};
 #[cfg(all(feature = "images", feature = "points"))]
-pub use mesh::{OpenedMesh, colour_values};
+pub use mesh::OpenedMesh;
+pub use mesh::{MeshBorder, MeshInfo, MeshPart, MeshScan, MeshUnion};
 #[cfg(feature = "images")]
 pub use opened::OpenedSource;
 pub use record::{FileRecord, FileRequest, ValueText};
@@ -608,8 +608,6 @@ impl Session {
     pub fn measure(&mut self, measured: Measured, budget: u32) -> Option<Report> {
         self.forget_comparison();
         let report = self.run.measure_freely(measured, budget)?;
-        #[cfg(all(feature = "images", feature = "points"))]
-        self.add_colours();
         Some(self.completed(report))
     }
 

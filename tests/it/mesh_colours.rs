@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use marching_particles::remesh::MeshOptions;
-use marching_particles::session::colour_values;
 use marching_particles::{MeshFormat, Settings, TriangleMesh, sample};
 
 /// The corners of the unit cube, whose colours are their places.
@@ -83,10 +82,7 @@ fn new_meshes_have_the_colours_of_the_old_one_in_their_files() {
     let (name, text) = files()[0].clone();
     let mesh = TriangleMesh::read(name, text.into_bytes()).expect("a mesh");
     let field = mesh.solid().and_then(|solid| solid.field(&MeshOptions::default())).expect("a field");
-    let mut made = sample(&field, &Settings::with_count(600)).expect("a sample");
-    for (name, value) in colour_values(field.solid()) {
-        made.add_value(&field, name, &value).expect("a column");
-    }
+    let made = sample(&field, &Settings::with_count(600)).expect("a sample");
     // GLB has 16 bits for the light, which spread dark values by up to 13.
     for (format, name, within) in
         [(MeshFormat::Ply, "new.ply", 0.5 / 255.0), (MeshFormat::Glb, "new.glb", 1e-3)]

@@ -4,7 +4,7 @@
 use marching_particles::field::BatchField;
 use marching_particles::glam::DVec3;
 use marching_particles::run::{Value, ValueError};
-use marching_particles::{Format, Formula, MeshFormat, Sample, Settings, sample};
+use marching_particles::{Field, Format, Formula, MeshFormat, Sample, Settings, sample};
 
 const TORUS: &str = "(hypot(x, y) - 1)^2 + z^2 = 0.16";
 
@@ -156,4 +156,89 @@ fn what_is_no_value_is_refused() {
     let error = sample.add_value(&field, "bad", &failing).expect_err("it fails");
     assert_eq!(error.to_string(), "the function of the values has failed: no value");
     assert_eq!(sample.values().len(), 1);
+}
+
+/// A sample of a formula, with the names of the columns that it gives.
+fn coloured(text: &str) -> (Sample, Vec<String>) {
+    let torus = Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+    let sample = sample(&torus, &Settings::with_count(800)).expect("a sample");
+    let names = sample.values().iter().map(|own| own.name.clone()).collect();
+    (sample, names)
+}
+
+#[test]
+fn a_formula_gives_its_surface_a_colour() {
+    let (plain, none) = coloured(TORUS);
+    assert!(none.is_empty());
+    for text in [
+        format!("colour = 2 x + 1; {TORUS}"),
+        format!("{TORUS}; color = 2 x + 1"),
+        format!("{TORUS}\ncolour = 2 x + 1\n"),
+        format!("twice = 2 x\ncolour = twice + 1\n{TORUS}"),
+        format!("twice(t) = 2 t; half = x / 2; colour = twice(2 half) + 1; {TORUS}"),
+        "r = hypot(x, y); (r - 1)^2 + z^2 = 0.16; colour = 2 x (r / r) + 1".to_owned(),
+    ] {
+        let (coloured, names) = coloured(&text);
+        assert_eq!(names, ["colour"], "{text}");
+        assert_eq!(coloured.particles().digest(), plain.particles().digest(), "{text}: the same surface");
+        for (p, value) in at_places(&coloured, "colour") {
+            assert!((value - (2.0 * p.x + 1.0)).abs() < 1e-5, "{text}: {value} at {p}");
+        }
+        let unused = Formula::parse(&text).expect("it was").facts().unused;
+        assert!(unused.is_empty(), "{text}: {unused:?}");
+    }
+}
+
+#[test]
+fn a_formula_gives_its_surface_red_green_and_blue() {
+    for triple in
+        ["(0.5 + x/4, 0.25, abs(n_z))", "vec3(0.5 + x/4, 0.25, abs(n_z))", "[0.5+x/4,0.25,abs(n_z)]"]
+    {
+        for name in ["c_rgb", "colour"] {
+            let (coloured, names) = coloured(&format!("{name} = {triple}; {TORUS}"));
+            assert_eq!(names, ["red", "green", "blue"], "{name} = {triple}");
+            for (row, (p, red)) in at_places(&coloured, "red").into_iter().enumerate() {
+                let of = |name| at_places(&coloured, name)[row].1;
+                assert!((red - (0.5 + p.x / 4.0)).abs() < 1e-6);
+                if row % 100 == 0 {
+                    let facing = f64::from(coloured.particles().normal[row].z.abs());
+                    assert!((of("green") - 0.25).abs() < 1e-7 && (of("blue") - facing).abs() < 1e-6);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_colour_follows_the_parameters_and_yields_to_the_program() {
+    let torus = Formula::parse("colour = R + z; (hypot(x, y) - R)^2 + z^2 = 0.16").expect("a formula");
+    let torus = torus.with("R", 1.5).expect("a parameter");
+    let mut sample = sample(&torus, &Settings::with_count(800)).expect("a sample");
+    let is_set = |(p, value): (DVec3, f64)| (value - (1.5 + p.z)).abs() < 1e-5;
+    assert!(at_places(&sample, "colour").into_iter().all(is_set));
+    sample.add_value(&torus, "colour", &Value::parse("7").expect("a formula")).expect("values");
+    assert_eq!(sample.values().len(), 1);
+    assert!(at_places(&sample, "colour").into_iter().all(|(_, value)| value == 7.0));
+}
+
+#[test]
+fn what_is_no_colour_is_refused_and_a_name_in_use_is_a_definition() {
+    for (text, at, says) in [
+        ("colour = k_3; x^2 + y^2 = 1", "k_3", "A particle has no `k_3`: a colour is made of"),
+        ("colour = area; x^2 + y^2 = 1", "area", "A particle has no `area`"),
+        ("c_rgb = z; x^2 + y^2 = 1", "c_rgb = z", "A colour has three parts"),
+        ("x^2 + y^2 = 1; colour = (x, y)", "colour = (x, y)", "A colour has three parts"),
+        ("colour = x; color = y; x^2 + y^2 = 1", "color", "A surface has one colour"),
+        ("colour = x +; x^2 + y^2 = 1", "", ""),
+        ("colour = ; x^2 + y^2 = 1", "", ""),
+    ] {
+        let error = Formula::parse(text).expect_err(text);
+        assert!(error.message.starts_with(says), "{text}: {error}");
+        assert!(at.is_empty() || &text[error.span.clone()] == at, "{text}: {:?}", error.span);
+    }
+    let (_, names) = coloured("colour = 2 x; colour^2 + y^2 + z^2 = 1");
+    assert!(names.is_empty(), "the surface uses it: {names:?}");
+    assert!(Value::parse("colour = x; colour").is_ok());
+    let error = Value::parse("x; colour = y").expect_err("a value has no colour");
+    assert!(error.message.starts_with("A value has no colour"), "{error}");
 }

@@ -136,15 +136,9 @@ def remesh(mesh, *, edges="auto", borders=None, smooth=None, lines=(), **options
         mesh = TriangleMesh(mesh, edges=edges, borders=borders, smooth=smooth, lines=lines)
     elif edges != "auto" or borders is not None or smooth is not None or len(lines):
         raise TypeError("edges, borders, smooth and lines belong to TriangleMesh: give them to it")
-    colours = {name: _colour_of(mesh, name) for name, _ in mesh._mesh.colours()}
-    result = sample(mesh, values={**colours, **(options.pop("values", None) or {})}, **options)
+    result = sample(mesh, **options)
     result.change = mesh.compare(result.mesh())
     return result
-
-
-def _colour_of(mesh, name):
-    """A part of the colour of a mesh as a function of place."""
-    return Field(dict(mesh._mesh.colours())[name], partial(_colour_of, mesh, name))
 
 
 def _colours(mesh):

@@ -2,7 +2,7 @@
 
 use super::evaluator::EdgedEvaluator;
 use super::table::EdgeTable;
-use crate::field::{Evaluator, Facts, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync, Piecewise};
+use crate::field::{Evaluator, Facts, Field, FieldError, Frame, Jet, MaybeSend, MaybeSync, Piecewise, Value};
 use core::ops::Deref;
 use glam::DVec3;
 use std::sync::Arc;
@@ -96,5 +96,9 @@ where
 
     fn failure(&self) -> Option<FieldError> {
         self.field.failure()
+    }
+
+    fn columns(&self) -> Vec<(&'static str, Value)> {
+        self.field.columns()
     }
 }

@@ -36,9 +36,7 @@ impl Formula {
         let is_named = |parameter: &&Parameter| text.contains(&*parameter.name);
         let parameters: Vec<Parameter> = parameters.iter().filter(is_named).cloned().collect();
         let compiled = Compiled::new(&equation, &parameters)?;
-        let (automatic, unused) = (Vec::new(), Vec::new());
-        let written = WrittenFormula { text: text.to_owned(), equation, automatic, unused };
-        Ok(Self::of(written, parameters, compiled))
+        Ok(Self::of(WrittenFormula::new(text, equation, Vec::new()), parameters, compiled))
     }
 }
 
@@ -65,6 +63,10 @@ pub(super) fn expression(
         (_, Some(name)) => FormulaError { message: no_parameter(name), name: None, ..error },
         _ => error,
     })?;
+    if let Some(colour) = parsed.colours.given.first() {
+        let message = format!("A {what} has no colour: that belongs to the formula of the surface");
+        return Err(FormulaError::new(ErrorKind::BadDefinition, colour.span.clone(), message));
+    }
     if let Some(right) = &parsed.equation.right {
         let span = parsed.equation.left.span.end..right.span.end;
         let message = format!("A {what} has no `=`");

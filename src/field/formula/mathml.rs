@@ -1,5 +1,6 @@
 //! Presentation MathML of a formula, with fractions, roots, powers and Greek letters.
 
+use super::Formula;
 use super::ast::{COORDINATES, Connective, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::display::{Precedence, level};
 use super::latex::greek;
@@ -68,8 +69,8 @@ pub enum MathNode {
 }
 
 /// Content of the `math` element for an equation. A formula without `=` gets `= 0`. With
-/// definitions it is a table, and the surface is its last row.
-pub(super) fn equation(equation: &Equation) -> MathNode {
+/// definitions or colours it is a table, and the surface is its last row.
+pub(super) fn equation(equation: &Equation, colours: &[(&'static str, Formula)]) -> MathNode {
     let right = equation.right.as_ref().map_or_else(|| mn("0"), expression);
     let mut parts = vec![expression(&equation.left), mo("="), right];
     for (index, condition) in equation.region.iter().enumerate() {
@@ -81,7 +82,7 @@ pub(super) fn equation(equation: &Equation) -> MathNode {
         parts.push(mo("}"));
     }
     let surface = row(parts);
-    if equation.definitions.is_empty() {
+    if equation.definitions.is_empty() && colours.is_empty() {
         return surface;
     }
     let definitions = equation.definitions.iter().map(|definition| {
@@ -93,7 +94,10 @@ pub(super) fn equation(equation: &Equation) -> MathNode {
         };
         row([head, mo("="), expression(&definition.body)])
     });
-    table(definitions.chain([surface]).map(|row| vec![row]))
+    let colours = colours
+        .iter()
+        .map(|(name, colour)| row([parameter(name), mo("="), expression(&colour.written.equation.left)]));
+    table(definitions.chain(colours).chain([surface]).map(|row| vec![row]))
 }
 
 fn table(rows: impl Iterator<Item = Vec<MathNode>>) -> MathNode {

@@ -47,6 +47,7 @@ mod branches;
 mod build;
 mod builder;
 mod call;
+mod colours;
 mod compiled;
 mod conditions;
 mod control;
@@ -59,6 +60,7 @@ mod eval;
 mod evaluator;
 mod expression;
 mod graph;
+mod heads;
 mod interval;
 mod latex;
 mod lex;
@@ -86,11 +88,13 @@ mod steps;
 mod tests;
 mod thickness;
 mod token;
+mod value;
 mod wrapped;
 
 #[doc(hidden)]
 pub use ast::{FUNCTIONS, FunctionInfo};
 pub use builder::Expr;
+pub(crate) use colours::CHANNELS;
 #[doc(hidden)]
 pub use control::Grip;
 #[doc(hidden)]
@@ -107,6 +111,8 @@ pub use porosity::PorosityError;
 #[doc(hidden)]
 pub use spelling::similar;
 pub use thickness::Thickness;
+pub use value::Value;
+pub(crate) use value::{QUANTITIES, Source};
 
 use super::{Evaluator, Facts, Field, Frame, Jet, Piecewise, UnitCell};
 use crate::math::Bounds;
@@ -222,6 +228,17 @@ struct WrittenFormula {
     automatic: Vec<String>,
     /// Declared names that the formula does not use.
     unused: Vec<String>,
+    /// The columns of the colours that the formula gives, with their functions.
+    columns: Vec<(&'static str, Formula)>,
+    /// Names of definitions that neither the surface nor a colour depends on.
+    idle: Vec<String>,
+}
+
+impl WrittenFormula {
+    fn new(text: &str, equation: Equation, automatic: Vec<String>) -> Self {
+        let (unused, columns, idle) = (Vec::new(), Vec::new(), equation.unused());
+        Self { text: text.to_owned(), equation, automatic, unused, columns, idle }
+    }
 }
 
 impl Formula {
@@ -275,7 +292,11 @@ impl Formula {
         parameters.extend(automatic.iter().map(|name| Parameter::automatic(name)));
 
         let compiled = Compiled::new(&parsed.equation, &parameters)?;
-        let written = WrittenFormula { text: text.to_owned(), equation: parsed.equation, automatic, unused };
+        let mut written = WrittenFormula { unused, ..WrittenFormula::new(text, parsed.equation, automatic) };
+        let colours = parsed.colours.checked()?;
+        written.idle.retain(|name| colours.iter().all(|colour| !colour.needs(name)));
+        let columns = colours.iter().map(|colour| value::of_colour(colour, &parameters));
+        written.columns = columns.collect::<Result<_, _>>()?;
         Ok(Self::of(written, parameters, compiled))
     }
 
@@ -284,8 +305,7 @@ impl Formula {
     fn of_equation(text: &str, equation: Equation, automatic: Vec<String>) -> Result<Self, FormulaError> {
         let parameters: Vec<Parameter> = automatic.iter().map(|name| Parameter::automatic(name)).collect();
         let compiled = Compiled::new(&equation, &parameters)?;
-        let written = WrittenFormula { text: text.to_owned(), equation, automatic, unused: Vec::new() };
-        Ok(Self::of(written, parameters, compiled))
+        Ok(Self::of(WrittenFormula::new(text, equation, automatic), parameters, compiled))
     }
 
     fn of(written: WrittenFormula, parameters: Vec<Parameter>, compiled: Compiled) -> Self {
@@ -499,7 +519,7 @@ impl Formula {
     #[must_use]
     #[doc(hidden)]
     pub fn mathml(&self) -> MathNode {
-        mathml::equation(&self.written.equation)
+        mathml::equation(&self.written.equation, &self.written.columns)
     }
 
     /// Parameters that the formula uses: the declared ones, then the automatic ones.
@@ -593,7 +613,7 @@ fn syntax(text: &str, declared: &[&str]) -> Result<(statements::Parsed, Vec<Stri
 /// Any of [`FormulaErrorKind`], with its span in bytes of `text`: [`FormulaErrorKind::UnknownName`]
 /// for a coordinate or a parameter.
 pub fn number(text: &str) -> Result<f64, FormulaError> {
-    let statements::Parsed { equation, names } = statements::parse(text, &[])?;
+    let statements::Parsed { equation, names, .. } = statements::parse(text, &[])?;
     let varying = equation.left.any(&|kind| matches!(kind, ast::ExprKind::Coordinate(_)));
     let mut graph = Graph::default();
     let number = match build::build(
@@ -683,7 +703,7 @@ impl Field for Formula {
             }),
             sampled_as: self.simplified.as_deref().map(display::plain_equation),
             flush_faces: self.flush.to_vec(),
-            unused: self.written.equation.unused(),
+            unused: self.written.idle.clone(),
             why_constant: first.map(|first| spelling::no_coordinate(&first.name)),
             ..Facts::default()
         }
@@ -691,6 +711,10 @@ impl Field for Formula {
 
     fn piecewise(&self) -> Option<&dyn Piecewise> {
         Some(self)
+    }
+
+    fn columns(&self) -> Vec<(&'static str, Value)> {
+        value::of_columns(&self.written.columns, &self.parameters)
     }
 }
 

@@ -132,7 +132,7 @@ fn written(text: &str, declared: &[&str], names: &[(&str, &str)]) -> Option<Stri
 
 /// The values of a formula at [`POINTS`].
 fn values(text: &str, declared: &[&str]) -> Option<Vec<f64>> {
-    let Parsed { equation, names } = statements::parse(text, declared).ok()?;
+    let Parsed { equation, names, .. } = statements::parse(text, declared).ok()?;
     let names = names.into_iter().map(|(name, _)| name).collect();
     let field = Formula::of_equation(text, equation, names).ok()?;
     Some(POINTS.iter().map(|&p| field.jet(p).value).collect())

@@ -10,8 +10,10 @@
 
 use super::MAX_FORMULA_BYTES;
 use super::ast::{COORDINATES, Constant, Definition, Equation, Expr, Function};
+use super::colours::{self, ColourText, Colours};
 use super::elsewhere::{self, NO_VECTORS, is_elsewhere, is_vector};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
+use super::heads::{Head, head, nameless, word};
 use super::lex::tokens;
 use super::parse::{Parse, Parser, inequality};
 use super::spelling::{is_known, readings};
@@ -24,6 +26,8 @@ pub(super) struct Parsed {
     pub(super) equation: Equation,
     /// Each name once, in order of appearance, with the span of its first occurrence.
     pub(super) names: Vec<(String, Range<usize>)>,
+    /// The colours that the formula gives to the surface.
+    pub(super) colours: Colours,
 }
 
 /// Parses `text`. `declared` are the names of the declared parameters.
@@ -43,9 +47,10 @@ pub(super) fn parse(text: &str, declared: &[&str]) -> Result<Parsed, FormulaErro
         let message = "Type a formula of x, y and z, for example `x^2 + y^2 + z^2 = 1`";
         return Err(FormulaError::new(ErrorKind::Empty, 0..0, message));
     }
-    let mut parser = Parser::new(text, separated(text, tokens), declared);
-    let equation = parser.statements()?;
-    Ok(Parsed { equation, names: parser.names })
+    let (tokens, colours) = colours::taken_out(text, separated(text, tokens));
+    let mut parser = Parser::new(text, tokens, declared);
+    let equation = parser.statements(&colours.given)?;
+    Ok(Parsed { equation, names: parser.names, colours })
 }
 
 /// The tree of a text that defines a function of the language with these arguments.
@@ -53,94 +58,6 @@ pub(super) fn body(text: &str, arguments: impl Iterator<Item = String>) -> Parse
     let mut parser = Parser::new(text, tokens(text, &[])?, &[]);
     parser.present = Some((String::new(), arguments.collect()));
     parser.value()
-}
-
-/// Words before the name that a program gives a value or a function.
-const KEYWORDS: [&str; 9] = ["float", "double", "int", "let", "const", "var", "auto", "def", "function"];
-
-/// The beginning of a definition.
-struct Head {
-    /// Token of the name, which a keyword may precede.
-    name: usize,
-    has_keyword: bool,
-    /// Names of the arguments of a function.
-    arguments: Vec<String>,
-    /// First token of the definition's body.
-    body: usize,
-}
-
-fn word(tokens: &[Spanned], at: usize) -> Option<&str> {
-    match &tokens.get(at)?.token {
-        Token::Name(name) => Some(name),
-        _ => None,
-    }
-}
-
-fn is_at(tokens: &[Spanned], at: usize, token: &Token) -> bool {
-    tokens.get(at).is_some_and(|spanned| spanned.token == *token)
-}
-
-/// The names between token `at` and the token `end`, with commas between them and perhaps types
-/// before them, and the token after `end`. Mathematica writes `f[x_]`.
-fn names(tokens: &[Spanned], mut at: usize, end: &Token) -> Option<(Vec<String>, usize)> {
-    let mut names = Vec::new();
-    loop {
-        if word(tokens, at).is_some_and(|word| KEYWORDS.contains(&word)) && word(tokens, at + 1).is_some() {
-            at += 1;
-        }
-        let name = word(tokens, at)?;
-        names.push(if *end == Token::Close(']') { name.strip_suffix('_')? } else { name }.to_owned());
-        at += 1;
-        if is_at(tokens, at, end) {
-            return Some((names, at + 1));
-        }
-        if !is_at(tokens, at, &Token::Comma) {
-            return None;
-        }
-        at += 1;
-    }
-}
-
-/// The arguments of a nameless function, `@(x, y, z) …`, `lambda x, y, z: …` or `(x, y, z) => …`,
-/// and the token after them.
-fn nameless(tokens: &[Spanned], at: usize) -> Option<(Vec<String>, usize)> {
-    match &tokens.get(at)?.token {
-        Token::At if is_at(tokens, at + 1, &Token::Open('(')) => names(tokens, at + 2, &Token::Close(')')),
-        Token::Name(name) if name == "lambda" => names(tokens, at + 1, &Token::Colon),
-        Token::Open('(') => names(tokens, at + 1, &Token::Close(')'))
-            .filter(|&(_, next)| is_at(tokens, next, &Token::Arrow))
-            .map(|(names, next)| (names, next + 1)),
-        _ => None,
-    }
-}
-
-/// The head of a definition that begins with token `at`: `r =`, `float r =`, `f(a, b) =`, `f =
-/// lambda a, b:`, `def f(a, b):`.
-fn head(tokens: &[Spanned], at: usize) -> Option<Head> {
-    let mut name = at;
-    while word(tokens, name).is_some_and(|word| KEYWORDS.contains(&word)) && word(tokens, name + 1).is_some()
-    {
-        name += 1;
-    }
-    word(tokens, name)?;
-    let has_keyword = name > at;
-    let (mut arguments, mut next) = (Vec::new(), name + 1);
-    for (open, close) in [('(', ')'), ('[', ']')] {
-        if is_at(tokens, name + 1, &Token::Open(open)) {
-            (arguments, next) = names(tokens, next + 1, &Token::Close(close))?;
-        }
-    }
-    let is_python = has_keyword && !arguments.is_empty() && is_at(tokens, next, &Token::Colon);
-    if !is_python && !is_at(tokens, next, &Token::Equals) {
-        return None;
-    }
-    let mut body = next + 1;
-    if arguments.is_empty()
-        && let Some((names, next)) = nameless(tokens, body)
-    {
-        (arguments, body) = (names, next);
-    }
-    Some(Head { name, has_keyword, arguments, body })
 }
 
 /// The tokens with a separator at the end of each line that ends a definition: where an operand
@@ -177,8 +94,9 @@ fn separated(text: &str, tokens: Vec<Spanned>) -> Vec<Spanned> {
     let (mut places, mut brackets, mut body) = (Vec::new(), 0_usize, head(&tokens, 0).map(|head| head.body));
     for at in 0..tokens.len() {
         let token = &tokens[at].token;
-        if body.is_some_and(|body| at > body)
+        if (body.is_some_and(|body| at > body) || colours::begins(&tokens, at))
             && brackets == 0
+            && at > 0
             && is_broken(at)
             && ends(&tokens[at - 1].token)
             && (begins(token) || begins_equation(at))
@@ -213,7 +131,7 @@ fn are_coordinates(names: &[String]) -> bool {
 }
 
 impl Parser<'_> {
-    fn statements(&mut self) -> Result<Equation, FormulaError> {
+    fn statements(&mut self, colours: &[ColourText]) -> Result<Equation, FormulaError> {
         loop {
             while self.take(&Token::Separator) {}
             self.skip_program();
@@ -223,7 +141,7 @@ impl Parser<'_> {
             if is_last {
                 break;
             }
-            self.definition(end)?;
+            self.definition(end, colours)?;
         }
         let surface = self.surface()?;
         let definitions =
@@ -265,8 +183,8 @@ impl Parser<'_> {
         range.into_iter().any(|at| word(&self.tokens, at) == Some(name))
     }
 
-    /// Parses a definition, which ends before token `end`.
-    fn definition(&mut self, end: usize) -> Result<(), FormulaError> {
+    /// Parses a definition, which ends before token `end`. The colours may use it as well.
+    fn definition(&mut self, end: usize, colours: &[ColourText]) -> Result<(), FormulaError> {
         let start = self.next;
         let refused = |span: Range<usize>, message: String| {
             Err(FormulaError::new(ErrorKind::BadDefinition, span, message))
@@ -324,7 +242,8 @@ impl Parser<'_> {
         check_conditions(&body)?;
         // A line that was meant to continue ends like a definition that nothing uses.
         let is_line = self.peek().span.is_empty();
-        if is_line && !self.mentions(&name, end..self.tokens.len()) {
+        let is_coloured = colours.iter().any(|colour| colour.needs(&name));
+        if is_line && !is_coloured && !self.mentions(&name, end..self.tokens.len()) {
             let message = format!(
                 "Nothing uses `{name}`, which is defined in this line: leave it out, or end the line with `;`"
             );

@@ -100,6 +100,11 @@ export class Columns {
     /** The value by which the particles are coloured; null before it is known. @type {Float32Array | null} */
     this.value = null;
     /**
+     * The colours that the surface has: `colour`, or `red`, `green` and `blue` from 0 to 1. Null before the report.
+     * @type {Record<string, Float32Array> | null}
+     */
+    this.own = null;
+    /**
      * Positions before each relaxation step; the first are those of the front, and the only ones if particles are many.
      * Empty before the end of a relaxation. Kept until the next run, even while no level is shown: only the whole run
      * could compute them again, and they take 12 bytes per particle, against 57 for all columns.
@@ -175,6 +180,7 @@ export class Columns {
   forget() {
     for (const name of MEASURED) this[name] = null;
     this.value = null;
+    this.own = null;
     this.mesh = null;
     this.record = null;
   }
@@ -283,6 +289,12 @@ export class Columns {
     if (figures.valence.length !== this.count) return;
     const known = MEASURED.filter((name) => figures[name].length === this.count);
     Object.assign(this, Object.fromEntries(known.map((name) => [name, figures[name]])));
+  }
+
+  /** Writes the colours that the surface has, by the names of their columns. @param {Record<string, Float32Array>} own */
+  writeOwn(own) {
+    const known = Object.entries(own).filter(([, values]) => values.length === this.count);
+    this.own = Object.fromEntries(known);
   }
 
   /** Writes a value per particle; values for another number of them are ignored. @param {Float32Array} values */

@@ -56,7 +56,7 @@ export type Colour = {
 };
 
 /** The quantity that colours the particles. */
-export type ColourMode = "level" | "fate" | "valence" | "nearest" | "energy" | "residual" | "radius" | "curvature" | "component" | "normal" | "value" | "plain";
+export type ColourMode = "level" | "fate" | "valence" | "nearest" | "energy" | "residual" | "radius" | "curvature" | "component" | "normal" | "value" | "own" | "plain";
 
 /** A column of PLY and CSV files, here and on the page. */
 export type Column = {

@@ -86,10 +86,9 @@ export function shareCommands({ store, columns, picture: { viewer }, sampler, lo
       const all = [...description(store).columns];
       /** @type {Columns & {values?: Record<string, Float32Array>}} */
       const exported = Object.create(columns);
-      if (columns.value) {
-        all.push(/** @type {typeof all[number]} */ ({ name: 'value', kind: 'float' }));
-        exported.values = { value: columns.value };
-      }
+      exported.values = { ...columns.own, ...(columns.value ? { value: columns.value } : {}) };
+      for (const name of Object.keys(exported.values))
+        all.push(/** @type {typeof all[number]} */ ({ name, kind: 'float' }));
       return format === 'csv' ? csv(exported, all) : ply(exported, all, record);
     },
     code: (language) => sampler.client.code(language),

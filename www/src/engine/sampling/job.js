@@ -443,9 +443,10 @@ class Run {
     });
     if (!report) return;
     const figures = /** @type {Figures} */ (Object.fromEntries(MEASURED.map((name) => [name, core[name]()])));
+    const own = Object.fromEntries(core.value_names().map((name) => [name, core.added_value(name)]));
     env.post(
-      { type: 'report', id: this.id, report: { ...report, seconds: { ...seconds } }, ...figures },
-      Object.values(figures).map((c) => c.buffer),
+      { type: 'report', id: this.id, report: { ...report, seconds: { ...seconds } }, own, ...figures },
+      [...Object.values(figures), ...Object.values(own)].map((c) => c.buffer),
     );
   }
 }

@@ -6,7 +6,8 @@
 import { batch } from '@preact/signals-core';
 import { MOST_STEPPED } from '../constants.js';
 import { patternOf } from '../patterns.js';
-import { change, idleProgress } from '../store.js';
+import { VIEW } from '../share/view.js';
+import { change, changeView, idleProgress } from '../store.js';
 import { refusalNotice } from './faults.js';
 import { KINDS } from './kinds.js';
 import { timingOf } from './pace.js';
@@ -29,6 +30,9 @@ export class Presenter {
 
   /** Whether the particles on the page belong to a run that has not ended. */
   #isUnfinished;
+
+  /** Whether the last surface had colours of its own. */
+  #isOwn = false;
 
   /** @param {{store: Store, columns: Columns, picture: PictureLike}} page */
   constructor({ store, columns, picture }) {
@@ -233,11 +237,25 @@ export class Presenter {
     this.store.change.value = change;
   }
 
+  /**
+   * Shows the colours that a surface has as soon as it has some, unless another colouring was chosen.
+   * @param {boolean} isOwn
+   */
+  #showOwn(isOwn) {
+    const { store } = this;
+    const [usual, now] = [VIEW.colour.home(), store.state.value.view.colour];
+    if (isOwn && !this.#isOwn && now === usual) changeView(store, { colour: 'own' });
+    if (!isOwn && now === 'own') changeView(store, { colour: usual });
+    this.#isOwn = isOwn;
+  }
+
   /** @param {ReportMessage} message */
-  report({ report, ...figures }) {
+  report({ report, own, ...figures }) {
     const { store, columns } = this;
     columns.writeFigures(figures);
+    columns.writeOwn(own);
     batch(() => {
+      this.#showOwn(Object.keys(own).length > 0);
       store.report.value = report;
       store.revision.value += 1;
       store.progress.value = { ...store.progress.value, phase: 'done' };

@@ -117,7 +117,8 @@ export interface DoneMessage {
 }
 /** What the particles of a run that has ended were made from; none of particles that have followed a surface. */
 export type RecordMessage = { type: 'record'; id: number; record: FileRecord };
-export type ReportMessage = { type: 'report'; id: number; report: Report } & Figures;
+/** `own`: the columns of the colours that the surface has, by their names. */
+export type ReportMessage = { type: 'report'; id: number; report: Report; own: Record<string, Float32Array> } & Figures;
 export type LoadFault = import('../bundle/types.js').LoadFault;
 export type FromWorker =
   | { type: 'ready'; description: Description }

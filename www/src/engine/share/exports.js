@@ -24,8 +24,14 @@ const ROWS = 8192;
 /** Returns the positions in the best known precision. @param {Columns} columns */
 const placesOf = ({ exact, positions }) => (exact.length > 0 ? exact : positions);
 
+/** The columns that are the parts of a colour. */
+const CHANNELS = ['red', 'green', 'blue'];
+
 /** Returns the type of the values of a column, by its name in PLY. @param {Columns} columns @param {Column} column */
 const typeOf = ({ exact }, { kind }) => (kind === 'coordinate' ? (exact.length > 0 ? 'double' : 'float') : kind);
+
+/** A part of a colour in eight bits, as PLY has it. @param {number} part  from 0 to 1 */
+const inEightBits = (part) => Math.round(255 * Math.min(1, Math.max(0, part || 0)));
 
 /**
  * For each column name, the value of a particle.
@@ -83,7 +89,10 @@ const BINARY = {
  */
 export function ply(columns, all, record) {
   const { count } = columns;
-  const some = known(columns, all);
+  const isColour = CHANNELS.every((name) => columns.values?.[name]);
+  const some = known(columns, all).map((column) =>
+    isColour && CHANNELS.includes(column.name) ? /** @type {Column} */ ({ ...column, kind: 'uchar' }) : column,
+  );
   const header = [
     'ply',
     'format binary_little_endian 1.0',
@@ -99,8 +108,12 @@ export function ply(columns, all, record) {
   let offset = 0;
   for (const column of some) {
     const { bytes, write } = BINARY[typeOf(columns, column)];
-    for (let i = 0, at = offset; i < count; i += 1, at += stride)
-      write.call(body, at, readerOf(column)(columns, i) ?? 0, true);
+    const read = readerOf(column);
+    const isPart = isColour && CHANNELS.includes(column.name);
+    for (let i = 0, at = offset; i < count; i += 1, at += stride) {
+      const value = read(columns, i) ?? 0;
+      write.call(body, at, isPart ? inEightBits(value) : value, true);
+    }
     offset += bytes;
   }
   return new Blob([new TextEncoder().encode(header), body.buffer], { type: 'application/octet-stream' });

@@ -149,9 +149,9 @@ const curvatureRange = (columns) => evenRange(columns.curved, (i) => meanCurvatu
 
 /**
  * The smallest and the largest value; for values of both signs a range symmetric around 0.
- * @param {Columns} columns @returns {[number, number] | null}
+ * @param {Float32Array | null | undefined} value @returns {[number, number] | null}
  */
-function valueRange({ value }) {
+function valueRange(value) {
   if (!value) return null;
   let [low, high] = [Infinity, -Infinity];
   for (const v of value) {
@@ -162,6 +162,34 @@ function valueRange({ value }) {
   if (low > high) return null;
   return low < 0 && high > 0 ? evenRange(value.length, (i) => value[i]) : [low, high];
 }
+
+/**
+ * A colouring by a number of each particle, plain where it is NaN.
+ * @param {string} title @param {(columns: Columns) => Float32Array | null | undefined} valuesIn @returns {Colouring}
+ */
+const byValues = (title, valuesIn) => ({
+  range: (columns) => valueRange(valuesIn(columns)),
+  colour({ palette, columns, range }) {
+    const values = valuesIn(columns);
+    if (!range || !values) return null;
+    const [low, high] = range;
+    const colours = low < 0 && high > 0 ? palette.diverging : palette.sequential;
+    return (i) => (Number.isNaN(values[i]) ? palette.plain : onRamp(colours, values[i], low, high));
+  },
+  legend({ palette, range }) {
+    const isDiverging = range !== null && range[0] < 0 && range[1] > 0;
+    return {
+      title,
+      kind: isDiverging ? 'diverging' : 'sequential',
+      range: range ?? undefined,
+      ...(isDiverging ? { mark: 0 } : {}),
+      colours: hexes(isDiverging ? palette.diverging : palette.sequential),
+    };
+  },
+});
+
+/** The colouring by `colour = …` in a formula. */
+const OWN_NUMBER = byValues('Its own colour', ({ own }) => own?.colour);
 
 /** Labels for the border class if the surface has edges, and if it has seams. */
 const BESIDE_EDGES = 'at an edge or the box';
@@ -317,23 +345,20 @@ export const COLOURINGS = {
       pending: range === null || columns.curved < columns.count,
     }),
   },
-  value: {
-    range: valueRange,
-    colour({ palette, columns: { value }, range }) {
-      if (!range || !value) return null;
-      const [low, high] = range;
-      const colours = low < 0 && high > 0 ? palette.diverging : palette.sequential;
-      return (i) => (Number.isNaN(value[i]) ? palette.plain : onRamp(colours, value[i], low, high));
+  value: byValues('A formula', ({ value }) => value),
+  own: {
+    ...OWN_NUMBER,
+    colour(context) {
+      const { red, green, blue } = context.columns.own ?? {};
+      if (!red) return OWN_NUMBER.colour(context);
+      const { palette } = context;
+      return (i) => (Number.isNaN(red[i] + green[i] + blue[i]) ? palette.plain : packed([red[i], green[i], blue[i]]));
     },
-    legend({ palette, range }) {
-      const isDiverging = range !== null && range[0] < 0 && range[1] > 0;
-      return {
-        title: 'A formula',
-        kind: isDiverging ? 'diverging' : 'sequential',
-        range: range ?? undefined,
-        ...(isDiverging ? { mark: 0 } : {}),
-        colours: hexes(isDiverging ? palette.diverging : palette.sequential),
-      };
+    legend(context) {
+      const { own } = context.columns;
+      if (own?.colour) return OWN_NUMBER.legend(context);
+      const title = own && !own.red ? 'This surface has no colours of its own' : 'Its own colours';
+      return { title, kind: 'plain', colours: [], pending: own === null };
     },
   },
   component: {
@@ -441,9 +466,13 @@ function componentEntries(component, palette) {
  * or too bright.
  * @param {number} x @param {number} y @param {number} z
  */
-function colourOfDirection(x, y, z) {
-  const channel = (/** @type {number} */ v) => Math.round(255 * (0.525 + 0.375 * v)) & 255;
-  return ((255 << 24) | (channel(z) << 16) | (channel(y) << 8) | channel(x)) >>> 0;
+const colourOfDirection = (x, y, z) =>
+  packed(/** @type {[number, number, number]} */ ([x, y, z].map((v) => 0.525 + 0.375 * v)));
+
+/** Returns a colour of three channels from 0 to 1 as `0xAABBGGRR`. @param {[number, number, number]} channels */
+function packed(channels) {
+  const [r, g, b] = channels.map((v) => Math.round(255 * Math.min(1, Math.max(0, v))));
+  return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 }
 
 /** The six directions along the axes, for the legend. */

@@ -79,6 +79,7 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
   type: 'report',
   id,
   report: { count: n, seconds },
+  own: {},
   valence: new Uint8Array(n),
   nearest: new Float32Array(n),
   residual: new Float32Array(n),

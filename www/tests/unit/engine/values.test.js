@@ -2,7 +2,7 @@
 import { expect, test } from 'vitest';
 import { Columns } from '../../../src/engine/columns.js';
 import { compared, valued } from '../../../src/engine/sampling/joining.js';
-import { csv } from '../../../src/engine/share/exports.js';
+import { csv, ply } from '../../../src/engine/share/exports.js';
 import { lastingSettings, validSetting } from '../../../src/engine/share/state.js';
 import { homeView, validView } from '../../../src/engine/share/view.js';
 import { coloursOf, legendOf, rangeOf } from '../../../src/engine/view/colouring.js';
@@ -75,6 +75,35 @@ test('values of one sign have a ramp between their ends, of both signs one aroun
   expect(rangeOf('value', columnsOf([Number.NaN]))).toBe(null);
   both.writeValue(Float32Array.of(1));
   expect(both.value).toBe(null);
+});
+
+test('the colours of a surface are shown as they are, or as a number on a ramp', () => {
+  const { plain, sequential } = PALETTES.light;
+  const columns = columnsOf([0, 0, 0]);
+  expect(legendOf('own', 'light', columns).pending).toBe(true);
+  const third = Float32Array.of(0, 1, Number.NaN);
+  columns.writeOwn({ red: Float32Array.of(1, 0.5, 1), green: Float32Array.of(0, 0.5, 0), blue: third });
+  expect([...coloursOf('own', 'light', columns, 0, 3)]).toEqual([0xff0000ff, 0xffff8080, plain]);
+  expect(legendOf('own', 'light', columns)).toMatchObject({ title: 'Its own colours', pending: false });
+  columns.writeOwn({ colour: Float32Array.of(1, 2, 3), short: Float32Array.of(1) });
+  expect(Object.keys(columns.own ?? {})).toEqual(['colour']);
+  expect(rangeOf('own', columns)).toEqual([1, 3]);
+  expect(coloursOf('own', 'light', columns, 2, 3)[0]).toBe(sequential.at(-1));
+  expect(legendOf('own', 'light', columns)).toMatchObject({ title: 'Its own colour', kind: 'sequential' });
+  columns.writeOwn({});
+  expect(legendOf('own', 'light', columns)).toMatchObject({
+    title: 'This surface has no colours of its own',
+    pending: false,
+  });
+});
+
+test('PLY has the parts of a colour in eight bits', async () => {
+  const values = { red: Float32Array.of(0.2), green: Float32Array.of(1.5), blue: Float32Array.of(0) };
+  const columns = Object.assign(Object.create(columnsOf([0.5])), { values });
+  const all = /** @type {any} */ (Object.keys(values).map((name) => ({ name, kind: 'float' })));
+  const file = new Uint8Array(await ply(columns, all, null).arrayBuffer());
+  expect(new TextDecoder().decode(file)).toContain('property uchar green');
+  expect([...file.slice(-3)]).toEqual([51, 255, 0]);
 });
 
 test('files have the values as a column', async () => {
