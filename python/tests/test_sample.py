@@ -369,7 +369,7 @@ def test_every_setting_of_the_core_is_an_argument():
     assert {setting["argument"] for setting in SETTINGS} - elsewhere <= arguments
 
 
-def test_a_sheet_that_its_box_closes_is_a_solid():
+def test_a_shell_that_its_box_closes_is_a_solid():
     box = ((-3, -3, -3), (3, 3, 3))
     gyroid = "sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)"
     solid = mp.sample(gyroid, count=2000, bounds=box, closed=True, thickness="0.4 + 0.02z")

@@ -205,7 +205,7 @@ pub(crate) struct SampleArguments {
     #[command(flatten)]
     pub(crate) surface: SurfaceArguments,
 
-    /// Choose the thickness of the sheet so that it leaves this share of the box empty, measured by
+    /// Choose the thickness of the shell so that it leaves this share of the box empty, measured by
     /// the volume of the mesh: 70% or 0.7. Needs --closed and takes up to two more runs. A
     /// --thickness by a formula is scaled. For formulas
     #[arg(long, value_name = "SHARE%", value_parser = porosity, requires = "closed", conflicts_with_all = ["points", "image", "mesh_in"], help_heading = "Surface")]
@@ -287,7 +287,7 @@ pub(crate) struct SampleArguments {
     )]
     pub(crate) size: Option<Length>,
 
-    /// Thickness of the sheet in the files of --mesh, such as 2mm, instead of --thickness. Needs
+    /// Thickness of the shell in the files of --mesh, such as 2mm, instead of --thickness. Needs
     /// --size, which takes up to two more runs to meet it, or --scale and --unit
     #[arg(
         long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true,
@@ -437,9 +437,9 @@ pub(crate) struct SurfaceArguments {
     #[arg(skip)]
     pub(crate) pulls: Vec<Pull>,
 
-    /// Sample a sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, instead of the surface:
+    /// Sample a shell of this thickness around the surface, |f| ≤ T/2 |∇f|, instead of the surface:
     /// a number, or a formula of x, y, z and the parameters, such as "0.1 + 0.05z". Where it is
-    /// negative there is no sheet. For formulas
+    /// negative there is no shell. For formulas
     #[arg(
         long, value_name = "T", conflicts_with = "points", value_parser = thickness, allow_hyphen_values = true,
         help_heading = "Surface"
@@ -512,7 +512,7 @@ impl SampleArguments {
             // A porosity requires another thickness than the one in the file.
             let kept = record
                 .solid
-                .sheet()
+                .thickened()
                 .filter(|thickness| self.porosity.is_none() || matches!(thickness, Thickness::Formula(_)))
                 .filter(|_| self.wall.is_none());
             surface.thickness = surface.thickness.take().or(kept.cloned());

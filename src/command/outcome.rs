@@ -53,7 +53,7 @@ pub(crate) struct Outcome {
     pub(crate) parameters: BTreeMap<String, f64>,
     pub(crate) bounds: Bounds,
     pub(crate) settings: Settings,
-    /// Thickness of the sheet, if one is sampled.
+    /// Thickness of the shell, if one is sampled.
     pub(crate) thickness: Option<Thickness>,
     /// Spacing by a formula, if there is one.
     pub(crate) spacing: Option<SpacingText>,

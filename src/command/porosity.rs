@@ -1,4 +1,4 @@
-//! The option `--porosity`: finds the thickness of a sheet and runs it; if the mesh leaves another
+//! The option `--porosity`: finds the thickness of a shell and runs it; if the mesh leaves another
 //! share of the box empty than wanted, corrects the thickness.
 
 use crate::failure::Failure;
@@ -17,7 +17,7 @@ const CORRECTIONS: u32 = 2;
 /// The search for the thickness with the wanted porosity.
 pub(crate) struct Wish {
     wanted: f64,
-    /// The share that the thickness is computed for: the mesh is another body than the sheet.
+    /// The share that the thickness is computed for: the mesh is another body than the shell.
     aim: f64,
     /// The solid. Its thickness is absent, or a formula to be scaled.
     solid: SolidSettings,
@@ -29,14 +29,14 @@ pub(crate) struct Wish {
 
 impl Wish {
     /// Closes the session's surface by its box and sets the thickness for the wanted share. The box
-    /// is fitted to the surface without the sheet.
+    /// is fitted to the surface without the shell.
     pub(crate) fn begin(
         session: &mut Session,
         solid: SolidSettings,
         wanted: f64,
         settings_in: &dyn Fn(&Bounds) -> Settings,
     ) -> Result<Self, Failure> {
-        if let Some(Thickness::Number(_)) = solid.sheet() {
+        if let Some(Thickness::Number(_)) = solid.thickened() {
             return Err(Failure::Usage(
                 "--porosity finds the thickness: leave --thickness out, or give a formula such as \
                  \"0.1 + 0.05z\", which is scaled"
@@ -58,9 +58,9 @@ impl Wish {
     fn take_thickness(&self, session: &mut Session) -> Result<(), Failure> {
         let Source::Formula(surface) = session.run.field() else { return Ok(()) };
         let shape = self.solid.made_of(surface.clone(), None);
-        let sheet = shape.with_porosity(self.aim, &self.bounds);
-        let sheet = sheet.map_err(|error| Failure::Usage(error.to_string()))?;
-        let thickness = sheet.thickness().cloned().unwrap_or_default();
+        let shell = shape.with_porosity(self.aim, &self.bounds);
+        let shell = shell.map_err(|error| Failure::Usage(error.to_string()))?;
+        let thickness = shell.thickness().cloned().unwrap_or_default();
         let solid = SolidSettings { thickness, ..self.solid.clone() };
         session.choose(solid).map_err(|fault| refused_solid(&self.solid, fault))
     }

@@ -45,7 +45,7 @@ pub(crate) fn beyond_points(text: &str) -> Result<BeyondPoints, String> {
     }
 }
 
-/// A thickness that a sheet can have: a length or a formula.
+/// A thickness that a shell can have: a length or a formula.
 pub(crate) fn thickness(text: &str) -> Result<Thickness, String> {
     let solid = SolidSettings { thickness: text.into(), ..SolidSettings::default() };
     solid.validate().map_err(|error| error.to_string())?;

@@ -225,7 +225,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     }
     let mut sampled = settings;
     sampled.bounds = None;
-    let thickness = made.as_ref().and_then(|made| made.solid.sheet().cloned());
+    let thickness = made.as_ref().and_then(|made| made.solid.thickened().cloned());
     let spacing = made.as_ref().and_then(|made| made.spacing.clone());
     let (surface, formula, parameters) =
         made.map_or_else(Default::default, |made| (made.surface, made.formula, made.parameters));

@@ -37,8 +37,8 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     }
     if let Some(thickness) = &outcome.thickness {
         match thickness {
-            Thickness::Number(number) => write!(out, "sheet of thickness {}", significant(*number))?,
-            Thickness::Formula(text) => write!(out, "sheet of thickness {text}")?,
+            Thickness::Number(number) => write!(out, "shell of thickness {}", significant(*number))?,
+            Thickness::Formula(text) => write!(out, "shell of thickness {text}")?,
         }
         match outcome.porosity {
             Some(Porosity { wanted, reached: Some(reached) }) => {

@@ -124,7 +124,7 @@ pub(crate) fn choose(
     let mut request =
         FieldRequest { bounds: given, pulls: arguments.pulls.clone(), ..FieldRequest::default() };
     if let Some(fit) = fit_points(arguments, quiet)? {
-        if solid.box_faces == BoxFaces::Closed || solid.sheet().is_some() {
+        if solid.box_faces == BoxFaces::Closed || solid.thickened().is_some() {
             return Err(Failure::Usage(
                 "--closed and --thickness are for formulas, not for models from points".into(),
             ));

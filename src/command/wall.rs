@@ -1,4 +1,4 @@
-//! The option `--wall` with `--size`: the thickness of a sheet as a share of the mesh's longest
+//! The option `--wall` with `--size`: the thickness of a shell as a share of the mesh's longest
 //! side. The side is known only after a run, so the thickness may need a correction.
 
 use crate::arguments::{Length, SampleArguments};
@@ -12,7 +12,7 @@ use marching_particles::{Bounds, Run, Settings};
 /// Largest relative difference from the wanted wall that needs no correction: printers do not
 /// resolve it.
 const CLOSE: f64 = 5e-3;
-/// Most corrections. A sheet grows by at most its thickness, so each correction reduces the
+/// Most corrections. A shell grows by at most its thickness, so each correction reduces the
 /// difference to the wall's share of the longest side.
 const CORRECTIONS: u32 = 2;
 

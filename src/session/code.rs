@@ -190,7 +190,7 @@ impl Program<'_> {
         let mut imports = vec!["Formula", "Settings", "sample"];
         let mut surface = vec![format!("Formula::parse({:?})?", record.formula)];
         surface.extend(record.parameters.iter().map(|(name, value)| format!(".with({name:?}, {value:?})?")));
-        match record.solid.sheet() {
+        match record.solid.thickened() {
             Some(Thickness::Number(thickness)) => surface.push(format!(".thickened({thickness:?})")),
             Some(Thickness::Formula(text)) => surface.push(format!(".thickened_by({text:?})?")),
             None => {}
@@ -336,7 +336,7 @@ impl Program<'_> {
         if self.is_closed() && record.solid.box_cell == BoxCell::Periodic {
             given.push(("periodic", yes.to_owned()));
         }
-        match record.solid.sheet() {
+        match record.solid.thickened() {
             Some(Thickness::Number(thickness)) => given.push(("thickness", shortest_text(*thickness))),
             Some(Thickness::Formula(text)) => given.push(("thickness", quoted(text, quote))),
             None => {}
@@ -436,7 +436,7 @@ impl Program<'_> {
         if solid.box_cell == BoxCell::Periodic && self.is_closed() {
             words.push("--periodic".to_owned());
         }
-        if let Some(thickness) = solid.sheet() {
+        if let Some(thickness) = solid.thickened() {
             words.push(format!("--thickness {}", in_shell(&thickness.to_string())));
         }
         if settings.size_mode == SizeMode::Count {

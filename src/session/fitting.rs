@@ -71,7 +71,7 @@ pub struct SolidSettings {
     pub box_faces: BoxFaces,
     /// What opposite faces of the box have in common, if they close the solid.
     pub box_cell: BoxCell,
-    /// Thickness of the sheet that is sampled instead of the surface, in the units of the
+    /// Thickness of the shell that is sampled instead of the surface, in the units of the
     /// coordinates; 0 for the surface itself. See [`Formula::thickened_by`].
     pub thickness: Thickness,
     /// Where the surface of a model from points ends.
@@ -99,22 +99,22 @@ impl SolidSettings {
         }
     }
 
-    /// The thickness of the sheet, if there is one.
+    /// The thickness of the shell, if there is one.
     #[must_use]
-    pub fn sheet(&self) -> Option<&Thickness> {
+    pub fn thickened(&self) -> Option<&Thickness> {
         Some(&self.thickness).filter(|thickness| **thickness != Thickness::default())
     }
 
-    /// The field of the solid that is made of the surface of `field`: the surface or the sheet
+    /// The field of the solid that is made of the surface of `field`: the surface or the shell
     /// around it, closed by a box if one is given. A thickness that the surface cannot have is
     /// ignored.
     #[must_use]
     pub fn made_of(&self, field: Formula, closing: Option<&Bounds>) -> Formula {
         let mut solid = field.without_solid();
-        if let Some(thickness) = self.sheet()
-            && let Ok(sheet) = solid.clone().thickened_by(thickness.clone())
+        if let Some(thickness) = self.thickened()
+            && let Ok(shell) = solid.clone().thickened_by(thickness.clone())
         {
-            solid = sheet;
+            solid = shell;
         }
         match closing {
             Some(bounds) if self.box_cell == BoxCell::Periodic => solid.repeated_in(bounds),
@@ -138,7 +138,7 @@ impl SolidSettings {
     }
 
     /// The box of a surface of the gallery. Around a surface that is closed without its box there
-    /// is room for a sheet of a numeric thickness.
+    /// is room for a shell of a numeric thickness.
     #[must_use]
     pub fn own_box(&self, surface: &Surface) -> Bounds {
         let room = match self.thickness {
@@ -306,7 +306,7 @@ impl Session {
         let closing = choice.faces(field, clip, self.is_to_choose());
         let is_cell = closing.is_some() && choice.box_cell == BoxCell::Periodic;
         let present = (field.thickness(), field.closing_box(), field.is_cell());
-        if present != (choice.sheet(), closing, is_cell) {
+        if present != (choice.thickened(), closing, is_cell) {
             let solid = choice.made_of(field.clone(), closing.as_ref());
             self.fitting.closed = BoxSearch::default();
             self.fitting.creases = None;
@@ -377,7 +377,7 @@ impl Session {
     }
 
     /// Whether the box is to be fitted: not if it was given, nor around a surface of the gallery,
-    /// which has its own. Only a search for the box shows how much room a sheet takes whose
+    /// which has its own. Only a search for the box shows how much room a shell takes whose
     /// thickness is a formula.
     fn is_to_fit(&self) -> bool {
         let is_formula = matches!(self.fitting.choice.thickness, Thickness::Formula(_));

@@ -378,7 +378,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "thickness",
                 0.0,
                 "Thickness",
-                "Thickness t of a sheet around the surface, |f| ≤ t/2 |∇f|, which is sampled instead, in the units of x, y and z; 0 for the surface itself. A formula such as 0.1 + 0.05z makes it vary. For formulas.",
+                "Thickness t of a shell around the surface, |f| ≤ t/2 |∇f|, which is sampled instead, in the units of x, y and z; 0 for the surface itself. A formula such as 0.1 + 0.05z makes it vary. For formulas.",
             ))
         },
         of_box(choice(

@@ -235,7 +235,7 @@ fn the_box_is_fitted_to_what_is_within_the_limits() {
 }
 
 #[test]
-fn a_sheet_within_limits_is_closed() {
+fn a_shell_within_limits_is_closed() {
     let disc = Formula::parse("z = 0 {x^2 + y^2 < 1}").expect("a formula").thickened(0.2);
     let sample = sample(disc, &Settings::with_count(4_000)).expect("a sample");
     let volume = sample.volume().expect("a closed mesh");

@@ -127,7 +127,7 @@ fn unit_cells_have_the_same_opposite_faces_and_join_across_them() {
 }
 
 #[test]
-fn sheets_and_solids_with_creases_of_their_own_repeat() {
+fn shells_and_solids_with_creases_of_their_own_repeat() {
     // A wall has two sides. The cubes are around the corners of the box, which its faces cut, and
     // the hollows within it.
     let cell = Bounds::cube(core::f64::consts::PI);

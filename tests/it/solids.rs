@@ -1,4 +1,4 @@
-//! Solids made of the surface of a formula: closed by a box, and thickened to a sheet.
+//! Solids made of the surface of a formula: closed by a box, and thickened to a shell.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::Formula;

@@ -1,4 +1,4 @@
-//! Sheets whose thickness is a formula, and sheets by the share of a box that they leave empty.
+//! Shells whose thickness is a formula, and shells by the share of a box that they leave empty.
 
 use crate::solids::{field, grid, is_consistent};
 use core::cmp::Ordering;
@@ -59,7 +59,7 @@ fn the_thickness_is_that_of_the_place() {
 }
 
 #[test]
-fn a_sheet_ends_where_its_thickness_is_not_positive() {
+fn a_shell_ends_where_its_thickness_is_not_positive() {
     let wedge = thickened("z = 0", "0.2 x").closed_by(&Bounds::cube(1.0));
     let volume = closed(wedge, 1_000).volume().expect("a closed mesh");
     assert!((volume - 0.2).abs() < 1e-3, "{volume}");
@@ -109,7 +109,7 @@ fn a_graded_gyroid_has_the_volume_of_its_integral() {
 }
 
 #[test]
-fn a_sheet_repeats_with_its_thickness() {
+fn a_shell_repeats_with_its_thickness() {
     let period = core::f64::consts::TAU;
     for (thickness, along_z) in [
         ("0.3", Some(period)),
@@ -117,10 +117,10 @@ fn a_sheet_repeats_with_its_thickness() {
         ("0.3 + 0.05 sin(z/2)", Some(2.0 * period)),
         ("0.3 + 0.05 z", None),
     ] {
-        let sheet = gyroid().thickened_by(thickness).expect("a thickness");
-        assert_eq!(sheet.surface_periods(), [Some(period), Some(period), along_z], "{thickness}");
+        let shell = gyroid().thickened_by(thickness).expect("a thickness");
+        assert_eq!(shell.surface_periods(), [Some(period), Some(period), along_z], "{thickness}");
         let repeats =
-            sheet.repeated_in(&Bounds::cube(0.5 * period)).facts().unit_cell.expect("a cell").repeats;
+            shell.repeated_in(&Bounds::cube(0.5 * period)).facts().unit_cell.expect("a cell").repeats;
         assert_eq!(repeats, [true, true, along_z == Some(period)], "{thickness}");
     }
 }
@@ -151,14 +151,14 @@ fn mistakes_of_a_thickness_are_told_in_its_text() {
 }
 
 #[test]
-fn a_sheet_leaves_the_wanted_share_of_a_box_empty() {
+fn a_shell_leaves_the_wanted_share_of_a_box_empty() {
     let bounds = Bounds::cube(4.0);
-    for (sheet, porosity) in
+    for (shell, porosity) in
         [(gyroid(), 0.7), (gyroid().thickened_by("0.6 + 0.08 z").expect("a thickness"), 0.8)]
     {
-        let is_formula = sheet.thickness().is_some();
-        let part = sheet.with_porosity(porosity, &bounds).expect("a sheet");
-        let (first, slope) = match part.thickness().expect("a sheet") {
+        let is_formula = shell.thickness().is_some();
+        let part = shell.with_porosity(porosity, &bounds).expect("a shell");
+        let (first, slope) = match part.thickness().expect("a shell") {
             Thickness::Number(thickness) => (*thickness, 0.0),
             Thickness::Formula(text) => {
                 let factor: f64 = text.split('*').next().expect("a factor").parse().expect("a number");
@@ -177,13 +177,13 @@ fn a_sheet_leaves_the_wanted_share_of_a_box_empty() {
 }
 
 #[test]
-fn what_no_sheet_leaves_empty_is_told() {
+fn what_no_shell_leaves_empty_is_told() {
     let bounds = Bounds::cube(1.0);
     for porosity in [0.0, 1.0, -0.3, 70.0, f64::NAN] {
         let error = gyroid().with_porosity(porosity, &bounds).expect_err("no share");
         assert!(matches!(error, PorosityError::OutOfRange { .. }), "{error}");
     }
-    // Half of the box has no sheet, however it is scaled.
+    // Half of the box has no shell, however it is scaled.
     let half = || thickened("z = 0", "x");
     assert!(half().with_porosity(0.6, &bounds).is_ok());
     let error = half().with_porosity(0.4, &bounds).expect_err("impossible");
@@ -210,7 +210,7 @@ fn a_session_refuses_a_thickness_with_other_names() {
     session.choose(of_thickness("0.1 + 0.05 r z")).expect("a thickness");
     let settings = Settings::with_count(1_500);
     while session.fit(&|_| settings, false, 3).is_none() {}
-    // The sheet has room in a box of its own.
+    // The shell has room in a box of its own.
     session.start(&settings).expect("a run");
     while session.run.step(u32::MAX).stop_reason.is_none() {}
     let report = session.report();

@@ -88,7 +88,7 @@ export interface Options {
   /** whether opposite faces of a closed box have the same particles */
   periodic?: boolean;
   /**
-   * of a formula: thickness of a sheet around the surface, which is sampled instead; a number or a formula
+   * of a formula: thickness of a shell around the surface, which is sampled instead; a number or a formula
    */
   thickness?: number | string;
   /** `refined` takes longer and spaces particles more evenly */

@@ -4,7 +4,7 @@
  *
  * Writes into docs/images, each with a light and a dark ground: page (the whole page), sizes
  * (adaptive sampling and models from points), meshes (refined runs as meshes), solids (sharp
- * edges), sheets (whose thickness is a formula), moved (a film of particles that follow a surface)
+ * edges), shells (whose thickness is a formula), moved (a film of particles that follow a surface)
  * and levels (generation levels growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
@@ -80,8 +80,8 @@ const SOLIDS = [
   },
 }));
 
-/** What the strip of sheets shows: parts of one gyroid, whose thickness is a number, and then a formula. */
-const SHEETS = [0.6, '0.65 + 0.13z', '1.1 - 0.2 hypot(x, y)', '0.25 + 0.7 smoothstep(-1, 1, x)'].map((thickness) => ({
+/** What the strip of shells shows: parts of one gyroid, whose thickness is a number, and then a formula. */
+const SHELLS = [0.6, '0.65 + 0.13z', '1.1 - 0.2 hypot(x, y)', '0.25 + 0.7 smoothstep(-1, 1, x)'].map((thickness) => ({
   surface: 'gyroid',
   bounds: { min: [-3.6, -3.6, -3.6], max: [3.6, 3.6, 3.6] },
   settings: { box_faces: 'closed', thickness, size_mode: 'count', count: 6000, method: 'refined' },
@@ -328,7 +328,7 @@ async function film(name, scenes) {
 await strip('sizes', SIZES);
 await strip('meshes', MESHES);
 await strip('solids', SOLIDS, 4);
-await strip('sheets', SHEETS);
+await strip('shells', SHELLS);
 await film('moved', [tanglecubeSplits, ellipsoidIsPulled]);
 
 const LEVEL_STATES = [...LEVELS, null].map((level) => ({

@@ -379,7 +379,7 @@ def sample(
         closed: Whether the faces of the box close what they cut: the solid f <= 0 in the box. For
             formulas.
         periodic: Whether opposite faces of the box of ``closed`` have the same particles.
-        thickness: Thickness of a sheet around the surface that is sampled in its place: a number,
+        thickness: Thickness of a shell around the surface that is sampled in its place: a number,
             or a formula of x, y, z and the parameters. For formulas.
         method: ``"front"``, or ``"refined"``: slower, with more particles that have six neighbours.
         pattern: ``"hexagonal"``, as fronts grow; ``"blue"``: blue noise, a Poisson-disk pattern

@@ -120,8 +120,8 @@ fn programs() -> Vec<(Program, &'static str)> {
             use marching_particles::{Bounds, Formula, Settings, sample};
 
             let gyroid = Formula::parse("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)")?;
-            let sheet = gyroid.thickened(0.4).closed_by(&Bounds::cube(3.0));
-            let particles = sample(sheet, &Settings::with_count(8_000))?;
+            let shell = gyroid.thickened(0.4).closed_by(&Bounds::cube(3.0));
+            let particles = sample(shell, &Settings::with_count(8_000))?;
             particles.save("gyroid.3mf")?;
         },
         program! { particles:

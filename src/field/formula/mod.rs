@@ -130,7 +130,7 @@ use serde::{Deserialize, Serialize};
 use solids::Solid;
 use std::borrow::Cow;
 use std::sync::Arc;
-use thickness::Sheet;
+use thickness::Shell;
 
 /// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so
 /// that the time per typed character is bounded.
@@ -378,33 +378,33 @@ impl Formula {
         self.closed_by(bounds)
     }
 
-    /// The period along each axis of the surface, or of the sheet around it, before a box closes
+    /// The period along each axis of the surface, or of the shell around it, before a box closes
     /// it: see [`Facts::periods`].
     #[must_use]
     pub fn surface_periods(&self) -> [Option<f64>; 3] {
         let (graph, root) = &*self.surface;
         let (mut graph, mut root) = (Cow::Borrowed(graph), *root);
-        if let Some(sheet) = &self.solid.sheet {
+        if let Some(shell) = &self.solid.shell {
             let graph = graph.to_mut();
-            let half = sheet.half(graph);
+            let half = shell.half(graph);
             // Any function of both has the periods that they have in common.
             root = graph.intern(Node::Binary(Binary::Max, root, half));
         }
         [0, 1, 2].map(|axis| periods::period(&graph, root, axis, &self.values))
     }
 
-    /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative
+    /// Field of the shell of this thickness around the surface: |f| − t/2 |∇f|, which is negative
     /// where the distance from the surface is less than t/2 to first order. A box
-    /// [closes](Formula::closed_by) the sheet, not the solid. Text and MathML stay as they are.
+    /// [closes](Formula::closed_by) the shell, not the solid. Text and MathML stay as they are.
     #[must_use]
     pub fn thickened(mut self, thickness: f64) -> Self {
-        self.solid.sheet = Some(Sheet::even(thickness));
+        self.solid.shell = Some(Shell::even(thickness));
         self.make_solid();
         self
     }
 
     /// [`Formula::thickened`] by a thickness t(x, y, z), an expression in the coordinates and the
-    /// parameters of this formula: |f| − t/2 |∇f|, with t and ∇f at the same point. The sheet ends
+    /// parameters of this formula: |f| − t/2 |∇f|, with t and ∇f at the same point. The shell ends
     /// in an edge where t falls to 0, and is empty where t is negative or undefined.
     ///
     /// ```
@@ -422,7 +422,7 @@ impl Formula {
     /// Any of [`FormulaErrorKind`], with its span in bytes of `thickness`:
     /// [`FormulaErrorKind::UnknownName`] for a name that is no parameter of the formula.
     pub fn thickened_by(mut self, thickness: impl Into<Thickness>) -> Result<Self, FormulaError> {
-        self.solid.sheet = Some(Sheet::new(&thickness.into(), &self.parameters)?);
+        self.solid.shell = Some(Shell::new(&thickness.into(), &self.parameters)?);
         self.make_solid();
         Ok(self)
     }
@@ -433,7 +433,7 @@ impl Formula {
     ///
     /// Those of [`Formula::thickened_by`].
     pub(crate) fn check_thickness(&self, thickness: &Thickness) -> Result<(), FormulaError> {
-        Sheet::new(thickness, &self.parameters).map(drop)
+        Shell::new(thickness, &self.parameters).map(drop)
     }
 
     /// Field of the surface itself again, after [`Formula::thickened`] and [`Formula::closed_by`].
@@ -446,10 +446,10 @@ impl Formula {
         self
     }
 
-    /// Thickness of the sheet that is sampled instead of the surface, see [`Formula::thickened`].
+    /// Thickness of the shell that is sampled instead of the surface, see [`Formula::thickened`].
     #[must_use]
     pub fn thickness(&self) -> Option<&Thickness> {
-        self.solid.sheet.as_ref().map(|sheet| &sheet.thickness)
+        self.solid.shell.as_ref().map(|shell| &shell.thickness)
     }
 
     /// The box whose faces close the solid, see [`Formula::closed_by`].
@@ -467,7 +467,7 @@ impl Formula {
     fn make_solid(&mut self) {
         let (mut graph, mut f) = (*self.surface).clone();
         // A box alone closes the solid behind the surface, which needs no limits.
-        let is_surface = self.solid.sheet.is_some() || self.solid.closed.is_none();
+        let is_surface = self.solid.shell.is_some() || self.solid.closed.is_none();
         self.scales = Scales::default();
         if self.is_regular
             && is_surface

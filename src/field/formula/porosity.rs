@@ -1,11 +1,11 @@
-//! The thickness of the sheet that leaves a wanted share of a box empty.
+//! The thickness of the shell that leaves a wanted share of a box empty.
 
 use super::{Formula, Thickness};
 use crate::field::{BATCH, Field, Frame};
 use crate::math::Bounds;
 use glam::{DVec3, Vec3};
 
-/// Points of the box at which a sheet is tried. The share of them that it holds is off by about
+/// Points of the box at which a shell is tried. The share of them that it holds is off by about
 /// N^(−2/3) where its faces are curved, 0.04 %; more take longer.
 const POINTS: u32 = 1 << 17;
 
@@ -19,7 +19,7 @@ const FIRST: f64 = 1.0 / 128.0;
 /// 10¹² either way.
 const MOST_STEPS: u32 = 40;
 
-/// Why no sheet leaves a share of a box empty.
+/// Why no shell leaves a share of a box empty.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PorosityError {
@@ -29,7 +29,7 @@ pub enum PorosityError {
         /// The wanted share.
         porosity: f64,
     },
-    /// Sheets of any thickness leave more of the box empty, or less.
+    /// Shells of any thickness leave more of the box empty, or less.
     #[error(
         "no thickness leaves {:.1} % of the box empty: the nearest is {:.1} %; is the surface in the box, \
          and the thickness positive all over it?", 100.0 * wanted, 100.0 * nearest
@@ -37,13 +37,13 @@ pub enum PorosityError {
     Unreachable {
         /// The wanted share.
         wanted: f64,
-        /// The nearest share that a sheet leaves empty.
+        /// The nearest share that a shell leaves empty.
         nearest: f64,
     },
 }
 
 impl Formula {
-    /// The sheet around the surface that leaves this share of a box empty, closed by the box:
+    /// The shell around the surface that leaves this share of a box empty, closed by the box:
     /// [`Formula::thickness`] says how thick it is. If the thickness is a formula, it is scaled.
     ///
     /// The volume is counted at 131,072 points of the box, to about 0.05 %. That of a
@@ -62,7 +62,7 @@ impl Formula {
     ///
     /// # Errors
     ///
-    /// If the share is not between 0 and 1, or no sheet leaves it empty.
+    /// If the share is not between 0 and 1, or no shell leaves it empty.
     ///
     /// # Panics
     ///
@@ -76,13 +76,13 @@ impl Formula {
             _ => (Thickness::Number(1.0), FIRST * bounds.diagonal()),
         };
         let surface = self.clone().without_solid();
-        let sheet = |factor: f64| {
+        let shell = |factor: f64| {
             let thickness = unit.scaled(factor, &self.parameters);
             let thickened = thickness.and_then(|thickness| surface.clone().thickened_by(thickness));
-            thickened.expect("the sheet has this thickness but for a factor")
+            thickened.expect("the shell has this thickness but for a factor")
         };
         let places = Places::of(bounds);
-        let empty = |factor: f64| 1.0 - places.share_in(&sheet(factor));
+        let empty = |factor: f64| 1.0 - places.share_in(&shell(factor));
         let by_steps = |from: f64, step: f64, is_there: &dyn Fn(f64) -> bool| {
             let mut factor = from;
             for _ in 0..MOST_STEPS {
@@ -104,7 +104,7 @@ impl Formula {
                 high = middle;
             }
         }
-        Ok(sheet(six_digits(high)).closed_by(bounds))
+        Ok(shell(six_digits(high)).closed_by(bounds))
     }
 }
 

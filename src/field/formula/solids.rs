@@ -1,4 +1,4 @@
-//! Solids made of the surface of a formula: a sheet of some thickness, and what the faces of a box
+//! Solids made of the surface of a formula: a shell of some thickness, and what the faces of a box
 //! close.
 //!
 //! Both are further nodes of the graph of f, so that derivatives, bounds and branches are found as
@@ -8,20 +8,20 @@ use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use super::products::by_signs;
-use super::thickness::Sheet;
+use super::thickness::Shell;
 use crate::math::Bounds;
 
-/// Maximum number of smooth functions that make up the sheets of a thickened surface; k nested
-/// absolute values take 2ᵏ. Beyond it a choice of f gets one sheet as a whole, whose edges may be
+/// Maximum number of smooth functions that make up the shells of a thickened surface; k nested
+/// absolute values take 2ᵏ. Beyond it a choice of f gets one shell as a whole, whose edges may be
 /// off where gradients of different length meet.
-const MAX_SHEETS: usize = 128;
+const MAX_SHELLS: usize = 128;
 
-/// The solid that is made of a surface: its sheet and the box that closes it. Without both it is
+/// The solid that is made of a surface: its shell and the box that closes it. Without both it is
 /// the surface itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Solid {
-    /// The sheet around the surface.
-    pub(super) sheet: Option<Sheet>,
+    /// The shell around the surface.
+    pub(super) shell: Option<Shell>,
     /// The box whose faces close the solid.
     pub(super) closed: Option<Bounds>,
     /// Whether that box is a [cell](crate::field::UnitCell).
@@ -41,15 +41,15 @@ impl Solid {
 
     /// The node of the function that is at most 0 in the solid made of f, which is node `root`.
     pub(super) fn made_of(&self, graph: &mut Graph, root: Id) -> Id {
-        // The limits of the surface become faces of a sheet or of a closed solid.
-        let is_solid = self.sheet.is_some() || self.closed.is_some();
+        // The limits of the surface become faces of a shell or of a closed solid.
+        let is_solid = self.shell.is_some() || self.closed.is_some();
         let limited = graph.limited(root).filter(|_| is_solid);
         let surface = limited.map_or(root, |[f, _]| f);
         let mut solid = surface;
-        if let Some(sheet) = &self.sheet {
+        if let Some(shell) = &self.shell {
             graph.let_zero_annihilate();
             let apart = by_signs(graph, surface, &mut Vec::new());
-            let half = sheet.half(graph);
+            let half = shell.half(graph);
             solid = thickened(graph, apart, half);
         }
         if let Some([_, limit]) = limited {
@@ -77,15 +77,15 @@ impl Solid {
 /// t/2 to first order; `half` is the node of t/2. A varying t is taken at the place itself, not at
 /// the nearest point of the surface, which differs by about |∇t| t/2.
 ///
-/// Each operand of a choice in f gets a sheet by its own gradient: max(a, b) = 0 those around a = 0
+/// Each operand of a choice in f gets a shell by its own gradient: max(a, b) = 0 those around a = 0
 /// and b = 0, which meet in edges. With the one gradient of max(a, b) they would miss each other by
-/// the jump of |∇f|. Factors of a product get a sheet each, too: where they cross, the product has
+/// the jump of |∇f|. Factors of a product get a shell each, too: where they cross, the product has
 /// no gradient.
 fn thickened(graph: &mut Graph, root: Id, half: Id) -> Id {
-    let mut sheets = SheetBuilder { graph, half, left: MAX_SHEETS };
+    let mut shells = ShellBuilder { graph, half, left: MAX_SHELLS };
     let [above, below] = [false, true].map(|is_negative| {
-        let f = Signed::of(sheets.graph, root, is_negative);
-        sheets.side(f)
+        let f = Signed::of(shells.graph, root, is_negative);
+        shells.side(f)
     });
     graph.binary(Binary::Max, above, below)
 }
@@ -157,7 +157,7 @@ impl Signed {
     }
 }
 
-struct SheetBuilder<'a> {
+struct ShellBuilder<'a> {
     graph: &'a mut Graph,
     /// Node of half of the thickness.
     half: Id,
@@ -165,12 +165,12 @@ struct SheetBuilder<'a> {
     left: usize,
 }
 
-impl SheetBuilder<'_> {
+impl ShellBuilder<'_> {
     /// The node of a function that is at most 0 where f/|∇f| ≤ t/2, for the function f.
     fn side(&mut self, f: Signed) -> Id {
         match f.opened(self.graph) {
-            Opened::Face(face) => self.sheet(face),
-            _ if self.left <= 1 => self.sheet(f),
+            Opened::Face(face) => self.shell(face),
+            _ if self.left <= 1 => self.shell(f),
             Opened::Both { is_max, operands } => {
                 self.left -= 1;
                 let [a, b] = operands.map(|operand| self.side(operand));
@@ -185,7 +185,7 @@ impl SheetBuilder<'_> {
     }
 
     /// The node of f − t/2 |∇f|.
-    fn sheet(&mut self, f: Signed) -> Id {
+    fn shell(&mut self, f: Signed) -> Id {
         let gradient = derivative::gradient(self.graph, f.node);
         let squares = gradient.map(|slope| self.graph.power(slope, 2));
         let sum = self.graph.add(squares[0], squares[1]);

@@ -1,4 +1,4 @@
-//! The thickness of a sheet: a number, or an expression in the coordinates and the parameters of
+//! The thickness of a shell: a number, or an expression in the coordinates and the parameters of
 //! the formula whose surface it thickens.
 
 use super::ast::{Equation, Expr, ExprKind, Factor};
@@ -11,7 +11,7 @@ use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Thickness of the sheet that is sampled instead of a surface, in the units of the coordinates: a
+/// Thickness of the shell that is sampled instead of a surface, in the units of the coordinates: a
 /// number or a text in JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
@@ -19,12 +19,12 @@ pub enum Thickness {
     /// A thickness that is the same everywhere.
     Number(f64),
     /// An expression in x, y, z and the parameters of the formula, such as `0.1 + 0.05 z`. There is
-    /// no sheet where it is negative or zero.
+    /// no shell where it is negative or zero.
     Formula(String),
 }
 
 impl Default for Thickness {
-    /// No sheet.
+    /// No shell.
     fn default() -> Self {
         Self::Number(0.0)
     }
@@ -100,29 +100,29 @@ impl<'de> Deserialize<'de> for Thickness {
     }
 }
 
-/// The sheet around the surface of a formula.
+/// The shell around the surface of a formula.
 #[derive(Clone, Debug)]
-pub(super) struct Sheet {
+pub(super) struct Shell {
     pub(super) thickness: Thickness,
     /// The graph of half of the thickness, and its node.
     half: Arc<(Graph, Id)>,
 }
 
-impl PartialEq for Sheet {
+impl PartialEq for Shell {
     fn eq(&self, other: &Self) -> bool {
         self.thickness == other.thickness
     }
 }
 
-impl Sheet {
-    /// The sheet of a thickness that is the same everywhere.
+impl Shell {
+    /// The shell of a thickness that is the same everywhere.
     pub(super) fn even(thickness: f64) -> Self {
         let mut graph = Graph::default();
         let half = graph.constant(0.5 * thickness);
         Self { thickness: thickness.into(), half: Arc::new((graph, half)) }
     }
 
-    /// The sheet of a thickness, around the surface of a formula with these parameters.
+    /// The shell of a thickness, around the surface of a formula with these parameters.
     pub(super) fn new(thickness: &Thickness, parameters: &[Parameter]) -> Result<Self, FormulaError> {
         let text = match thickness {
             Thickness::Number(thickness) => return Ok(Self::even(*thickness)),

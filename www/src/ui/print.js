@@ -38,8 +38,8 @@ export const sidesOf = (bodies) =>
   );
 
 /**
- * The longest side of a sheet's bounding box, and how many of its two ends are not cut by the clip box, so that a
- * thicker sheet reaches farther there.
+ * The longest side of a shell's bounding box, and how many of its two ends are not cut by the clip box, so that a
+ * thicker shell reaches farther there.
  * @param {Pick<Bounds, 'min' | 'max'>} around
  * @param {Bounds | null} box  that cuts the surface
  * @returns {Span}
@@ -54,7 +54,7 @@ export function spanOf({ min, max }, box) {
 }
 
 /**
- * The thickness of a sheet that gives the wanted wall once its longest side is scaled to the wanted size: each free end
+ * The thickness of a shell that gives the wanted wall once its longest side is scaled to the wanted size: each free end
  * moves by half the thickness. Null if the wall alone is larger than the size.
  * @param {number} wallMm @param {number} sizeMm
  * @param {Span & { thickness: number }} present

@@ -82,7 +82,7 @@ export interface ButtonProps extends Props<HTMLButtonElement> {
   off?: () => boolean;
 }
 
-/** The longest side of a sheet, and how many of its two ends no box cuts off. */
+/** The longest side of a shell, and how many of its two ends no box cuts off. */
 export type Span = { side: number; free: number };
 /** A part to be printed; the functions read signals. */
 export interface Print {
@@ -90,7 +90,7 @@ export interface Print {
   sizeMm: Signal<number>;
   /** millimetres of a unit of the formula; null where there is nothing */
   scale: () => number | null;
-  /** the wall in millimetres; 0 without a sheet, null where its thickness is a formula */
+  /** the wall in millimetres; 0 without a shell, null where its thickness is a formula */
   wall: () => number | null;
   /** the thickness that gives a wall of so many millimetres; null if none does */
   thickness: (wallMm: number) => number | null;

@@ -263,11 +263,11 @@ describe('a mesh', () => {
   });
 });
 
-test('a cell of a sheet is a closed solid whose opposite faces match', async () => {
+test('a cell of a shell is a closed solid whose opposite faces match', async () => {
   const bounds = /** @type {const} */ ({ min: [-3, -3, -3], max: [3, 3, 3] });
   const gyroid = 'sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)';
-  const sheet = { bounds, closed: true, thickness: '0.4 + 0.02z', count: 2000 };
-  const solid = await made.sample(gyroid, /** @type {any} */ (sheet));
+  const shell = { bounds, closed: true, thickness: '0.4 + 0.02z', count: 2000 };
+  const solid = await made.sample(gyroid, /** @type {any} */ (shell));
   const { volume, components } = await solid.mesh();
   expect(volume).toBeGreaterThan(10);
   expect(components.every(({ open_edges }) => open_edges === 0)).toBe(true);

@@ -246,7 +246,7 @@ fn a_file_says_how_to_make_it_again() {
     // A fitted box and a surface of the gallery with its own box and values.
     for (arguments, name) in [
         (vec!["--formula", "x^4 + y^4 + z^4 = 1", "--count", "900"], "fitted.glb"),
-        (vec!["--surface", "gyroid", "--thickness", "0.6", "--radius", "2%"], "sheet.glb"),
+        (vec!["--surface", "gyroid", "--thickness", "0.6", "--radius", "2%"], "shell.glb"),
         (vec!["--surface", "gyroid", "--closed", "--periodic", "--radius", "2%"], "cell.glb"),
     ] {
         let path = path(name);

@@ -1,5 +1,5 @@
 /**
- * The choices for the solid made of a surface: closed by the clip box, or a sheet of some thickness. For a model from
+ * The choices for the solid made of a surface: closed by the clip box, or a shell of some thickness. For a model from
  * points: whether its surface continues beyond them.
  */
 import { computed, signal } from '@preact/signals-core';
@@ -87,7 +87,7 @@ export function createSolid(engine, { settings }, print) {
   });
   const help = () => ({
     title: 'Closed',
-    text: `${about(FACES).text} With a thickness the sheet is closed.`,
+    text: `${about(FACES).text} With a thickness the shell is closed.`,
   });
   return h(
     'div',

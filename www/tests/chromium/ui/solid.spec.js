@@ -1,4 +1,4 @@
-/** A solid from a surface: closed by its box, and a sheet of some thickness; in links and in the history. */
+/** A solid from a surface: closed by its box, and a shell of some thickness; in links and in the history. */
 import { expect, test } from '@playwright/test';
 import { afresh, open, report, settled, state } from './helpers.js';
 

@@ -20,7 +20,7 @@ describe('the thickness for a wall', () => {
   const box = /** @type {any} */ ({ min: [-2, -1, -1], max: [2, 1, 1] });
   const ball = (/** @type {number} */ r) => /** @type {any} */ ({ min: [-r, -r / 2, -r / 2], max: [r, r / 2, r / 2] });
 
-  it('is in proportion where the box cuts the sheet off at both ends', () => {
+  it('is in proportion where the box cuts the shell off at both ends', () => {
     expect(spanOf(box, box)).toEqual({ side: 4, free: 0 });
     expect(thicknessOf(2, 40, { side: 4, free: 0, thickness: 0 })).toBe(0.2);
   });
