@@ -98,8 +98,9 @@
 //! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
 //! | crease, corner, patch | A curve along which two smooth parts of the surface meet at an angle; a point where creases meet; such a part. |
 //! | piece | A smooth function that gives f in a part of space, as each operand of a maximum does. |
-//! | row | An entry of the particle columns. A particle on a crease or a seam has one for each patch. |
-//! | seam | Of patches: a curve along which two meet without an edge. Of fronts: a line along which they meet out of step. |
+//! | row | An entry of the particle columns. A particle on a crease or a smooth join has one for each patch. |
+//! | smooth join | A curve along which two patches meet without an edge; `seams` in reports and columns. |
+//! | seam | A line along which fronts meet out of step: its particles have five or seven neighbours. |
 //! | gap | A hole between fronts that is wide enough for a particle. |
 //! | natural neighbours, valence | The particles whose Voronoi cells share an edge in the tangent plane; their number, six in a hexagonal lattice. |
 //! | defect | A particle of a mesh whose valence is not six, or on the border not four. |

@@ -56,7 +56,7 @@ pub struct Particles {
     /// mean normal of the sheet. These rows come before all others and do not move.
     pub twins: Vec<u32>,
     /// Pairs of particles that follow each other along a curve where patches meet, each by its
-    /// first row: along a crease, or a seam without an edge, as [`Particles::edges`] says.
+    /// first row: along a crease, or a smooth join, as [`Particles::edges`] says.
     pub segments: Vec<[u32; 2]>,
     /// For each of the segments, pairs of a patch on its left and one on its right, seen from
     /// outside: one pair, or two where the factors of a product cross.

@@ -19,7 +19,7 @@ pub enum Vertices {
     /// On a sharp edge a vertex for each side, with its normal. In OBJ the points stay joined, and
     /// faces refer to normals separately.
     Split,
-    /// A vertex for each row of the particles, also on smooth seams, in their order, with all
+    /// A vertex for each row of the particles, also on smooth joins, in their order, with all
     /// columns if the format is PLY.
     Columns,
 }

@@ -435,12 +435,12 @@ impl Pieces for Differences<'_> {
         &mut **piece
     }
 
-    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    fn edge_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let Some(field) = self.functions.piecewise() else {
             return Vec::new();
         };
         let labels = |points: &[DVec3], labels: &mut [u32]| write_labels(self.functions, points, labels);
-        let cells = edges::seams_between(field, &labels, &self.frame.outward(bounds), width);
+        let cells = edges::edge_cells_between(field, &labels, &self.frame.outward(bounds), width);
         cells.iter().map(|cell| cell.relative_to(self.frame.origin)).collect()
     }
 }

@@ -318,7 +318,7 @@ pub trait Pieces {
 
     /// Cells of a box in which a search for edges can begin: each edge in the box has a point in or
     /// next to one of them. They are no wider than `width`, unless that would take too long.
-    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds>;
+    fn edge_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds>;
 
     /// Pairs of patches that meet without an edge somewhere and yet are not one patch, since they
     /// or their neighbours meet at an angle elsewhere; the smaller label first.

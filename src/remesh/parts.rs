@@ -186,14 +186,14 @@ impl PartsField {
         self.shared.bulge + 2.0 * self.shift.abs()
     }
 
-    fn seams(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    fn edge_cells(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let origin = self.shared.origin;
         // The edges of an offset surface are not those of the mesh.
         if self.shift != 0.0 {
             let write = |points: &[DVec3], labels: &mut [u32]| {
                 labels.iter_mut().zip(points).for_each(|(label, &p)| *label = self.label(p - origin));
             };
-            return edges::seams_between(self, &write, bounds, width);
+            return edges::edge_cells_between(self, &write, bounds, width);
         }
         let cells = self.shared.cells(&bounds.relative_to(origin), width);
         cells.iter().map(|cell| cell.relative_to(-origin)).collect()
@@ -239,7 +239,7 @@ impl Piecewise for PartsField {
         let bounds = *bounds;
         Box::pin(async move {
             pause().await;
-            (self.seams(&bounds, width), Arc::new(self.clone()) as Arc<dyn Piecewise>)
+            (self.edge_cells(&bounds, width), Arc::new(self.clone()) as Arc<dyn Piecewise>)
         })
     }
 
@@ -365,8 +365,8 @@ impl Pieces for PartsEvaluator<'_> {
         &mut **own
     }
 
-    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let cells = self.field.seams(&self.frame.outward(bounds), width);
+    fn edge_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let cells = self.field.edge_cells(&self.frame.outward(bounds), width);
         cells.iter().map(|cell| cell.relative_to(self.frame.origin)).collect()
     }
 }

@@ -153,8 +153,8 @@ pub struct Proof {
     /// itself says which pieces meet at its edges, and if no edge was found.
     #[cfg_attr(test, ts(as = "Option<String>"))]
     pub edges_found: Option<EdgeSearch>,
-    /// Curves of particles along which patches of the surface meet without an edge; none if there
-    /// are none.
+    /// Smooth joins: curves of particles along which patches of the surface meet without an edge;
+    /// none if there are none.
     pub seams: Option<usize>,
 }
 
@@ -241,7 +241,7 @@ fn curves_of(Particles { twins, segments, sides, .. }: &Particles, is_of_kind: &
     }
 }
 
-/// Counts the creases, and the seams without an edge; none if their number is 0.
+/// Counts the creases, and the smooth joins; none if their number is 0.
 pub(super) fn creases_and_seams(particles: &Particles) -> [Option<CurveCounts>; 2] {
     let edges = particles.edges();
     let seams: Vec<bool> = edges.iter().map(|is_edge| !is_edge).collect();

@@ -117,9 +117,9 @@ pub enum FollowError {
     /// Blue noise or random points, whose pattern would be lost.
     #[error("a pattern of random points cannot follow a moving surface: start a run on the new one")]
     Pattern,
-    /// The old or the new surface has creases or seams, or the new one may have some in the box.
+    /// The old or the new surface has creases or smooth joins, or the new one may have some in the box.
     #[error(
-        "the surface has creases, seams or tips in the box, on which particles cannot follow: start a run on the new one"
+        "the surface has creases, smooth joins or tips in the box, on which particles cannot follow: start a run on the new one"
     )]
     Creased,
     /// The surface is gone, or it has moved too far: more than a tenth of the particles are farther

@@ -335,8 +335,8 @@ const REPORT: &[ReportRow] = &[
         .help("Particles at which creases meet or end."),
     row("edges_found", "Edges found", "Surface")
         .help("How the edges were found where the field does not tell its pieces: on a grid of values of f. Nothing is proven: edges of a part smaller than a cell of the grid may be missed. A smaller box misses less."),
-    row("seams", "Seams without an edge", "Surface")
-        .help("Curves along which smooth parts of the surface meet without an edge that meet at one elsewhere, as where a fillet fades out. Particles lie on them."),
+    row("seams", "Smooth joins", "Surface")
+        .help("Curves along which patches of the surface meet without an edge, which meet at an edge elsewhere, as where a fillet fades out. Particles lie on them."),
 ];
 
 const FATES: &[Fate] = &[
@@ -350,7 +350,7 @@ const FATES: &[Fate] = &[
     Fate {
         name: "outside",
         label: "Outside",
-        help: "The point lies outside the clip box, or beyond a crease or a seam, off the patch of its parent.",
+        help: "The point lies outside the clip box, or beyond a crease or a smooth join, off the patch of its parent.",
     },
     Fate { name: "undefined", label: "Undefined", help: "f has no value or no gradient there." },
     Fate { name: "capped", label: "Capped", help: "The limit on particles was reached." },
@@ -366,7 +366,7 @@ const COLOURS: &[Colour] = &[
     Colour {
         id: ColourMode::Fate,
         label: "Fate of the children",
-        help: "Interior, at the border of the box or beside a crease or a seam, or next to a place where a child found no surface.",
+        help: "Interior, at the border of the box or beside a crease or a smooth join, or next to a place where a child found no surface.",
         unit: "",
     },
     Colour {

@@ -119,7 +119,7 @@ impl Evaluator for CreasedEvaluator<'_> {
 
 /// The creases are those of the particles: nobody looks for them.
 impl Pieces for CreasedEvaluator<'_> {
-    fn seams_in(&mut self, _: &Bounds, _: f64) -> Vec<Bounds> {
+    fn edge_cells(&mut self, _: &Bounds, _: f64) -> Vec<Bounds> {
         unreachable!("the creases are given")
     }
 

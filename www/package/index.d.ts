@@ -145,7 +145,7 @@ export interface Sample {
   readonly count: number;
   /**
    * three values for each row of the columns, in double precision if the box is far from the origin. A particle has one
-   * row, or one on each side of a crease or a seam
+   * row, or one on each side of a crease or a smooth join
    */
   readonly points: Float32Array | Float64Array;
   readonly normals: Float32Array;
@@ -172,8 +172,8 @@ export interface Sample {
   readonly change: MeshChange | null;
   readonly digest: string;
   /**
-   * joins the particles to triangles. With `weld` the rows of a particle at a crease or a seam become one, with the
-   * normal of one side
+   * joins the particles to triangles. With `weld` the rows of a particle at a crease or a smooth join become one, with
+   * the normal of one side
    */
   mesh(how?: { weld?: boolean }): Promise<Mesh>;
   /**
@@ -219,7 +219,7 @@ export interface Points {
   points: Numbers;
   normals?: Numbers;
 }
-/** A file of points or of a mesh, whose vertices they are: PLY, OBJ, STL, OFF, GLB, PCD, XYZ, PTS or CSV. */
+/** A file of points or of a mesh, whose vertices they are: PLY, OBJ, STL, OFF, GLB, 3MF, PCD, XYZ, PTS or CSV. */
 export interface PointsFile {
   points: Blob | ArrayBuffer | Uint8Array;
   name?: string;

@@ -56,7 +56,7 @@ export interface Listeners {
   report: (report: Report) => void;
   error: (error: Error) => void;
 }
-/** Columns with a row per particle, or one on each side of a crease or a seam. */
+/** Columns with a row per particle, or one on each side of a crease or a smooth join. */
 export interface Particles {
   points: Float32Array;
   normals: Float32Array;

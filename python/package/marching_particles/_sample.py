@@ -70,7 +70,7 @@ _KEPT = (
 class Sample:
     """The particles of a run.
 
-    The arrays have a row for each particle. One on a sharp edge, or on a seam that prolongs one, has
+    The arrays have a row for each particle. One on a sharp edge, or on a smooth join that prolongs one, has
     a row on each side, with the normal of that side; :meth:`mesh` has it once. They are made when
     first asked for, and kept.
 

@@ -222,7 +222,7 @@ impl Pieces for CombinationEvaluator<'_> {
     }
 
     fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
-        let mut found = self.field.seams.clone();
+        let mut found = self.field.tangent_pairs.clone();
         for (k, part) in (0..).zip(&mut self.parts) {
             found.extend(part.tangent_pairs().into_iter().map(|pair| pair.map(|branch| 2 * branch + k)));
         }
@@ -237,10 +237,10 @@ impl Pieces for CombinationEvaluator<'_> {
         &mut **own
     }
 
-    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    fn edge_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let mut found = Vec::new();
         for part in &mut self.parts {
-            found.extend(part.pieces().map_or(Vec::new(), |pieces| pieces.seams_in(bounds, width)));
+            found.extend(part.pieces().map_or(Vec::new(), |pieces| pieces.edge_cells(bounds, width)));
         }
         slices::complete(self.drop_hidden(&mut found, DVec3::ZERO));
         found.extend(slices::complete(self.tied_cells(bounds, width)));

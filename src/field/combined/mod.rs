@@ -176,14 +176,14 @@ struct Combination {
     parts: Vec<Arc<dyn Field>>,
     /// Pairs of a branch of the first part and one of the second that are known to meet without an
     /// edge somewhere.
-    seams: Vec<[u32; 2]>,
+    tangent_pairs: Vec<[u32; 2]>,
     /// Whether the zeros of the second part only limit the surface, which ends at them.
     is_limited: bool,
 }
 
 impl Combination {
     fn new(rule: Rule, parts: Vec<Arc<dyn Field>>) -> Self {
-        Self { rule, parts, seams: Vec::new(), is_limited: false }
+        Self { rule, parts, tangent_pairs: Vec::new(), is_limited: false }
     }
 
     fn is_extreme(&self) -> bool {
@@ -272,8 +272,8 @@ impl Piecewise for Combination {
             let (mut found, mut own) = (Vec::new(), self.clone());
             for part in &mut own.parts {
                 let known = edges::known_in(&**part, &bounds, width, cells).await;
-                let Some((seams, known)) = known else { continue };
-                found.extend(seams);
+                let Some((cells, known)) = known else { continue };
+                found.extend(cells);
                 *part = edges::KnownPieces::of_shared(known.as_ref(), part);
             }
             let origin = bounds.middle();
@@ -283,9 +283,9 @@ impl Piecewise for Combination {
             evaluator.drop_hidden(&mut found, origin).await;
             let ties = evaluator.tied_cells(&near, width).await;
             found.extend(ties.iter().map(|cell| cell.relative_to(-origin)));
-            let seams = evaluator.seams_in(&ties).await;
+            let pairs = evaluator.tangent_pairs_in(&ties).await;
             drop(evaluator);
-            own.seams = seams;
+            own.tangent_pairs = pairs;
             let own: Arc<dyn Piecewise> = Arc::new(own);
             (found, own)
         })

@@ -21,7 +21,7 @@ const SLACK: f64 = 2.0;
 const PARALLEL: f64 = 1e-6;
 /// Sine of the largest angle between two gradients in the middle of a cell where their surfaces may
 /// meet without an edge, if one surface has a curvature up to a quarter of the inverse cell width.
-/// Larger: seams are searched for along creases that have none.
+/// Larger: smooth joins are searched for along creases that have none.
 const NEARLY_PARALLEL: f64 = 0.2;
 /// The largest number of cells that are divided further. Two surfaces that share a face exceed it.
 const MOST_CELLS: usize = 200_000;
@@ -61,7 +61,7 @@ impl CombinationEvaluator<'_> {
 
     /// The pairs of branches, one of each part, that may meet without an edge in cells where the
     /// parts are tied.
-    pub(super) async fn seams_in(&mut self, cells: &[Bounds]) -> Vec<[u32; 2]> {
+    pub(super) async fn tangent_pairs_in(&mut self, cells: &[Bounds]) -> Vec<[u32; 2]> {
         let mut found = Vec::new();
         for cells in cells.chunks(HEAVY) {
             pause().await;

@@ -454,8 +454,8 @@ impl Pieces for EdgedEvaluator<'_> {
         &mut **own
     }
 
-    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let cells = self.table.seams(&self.frame.outward(bounds), width);
+    fn edge_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let cells = self.table.edge_cells(&self.frame.outward(bounds), width);
         cells.iter().map(|cell| cell.relative_to(self.frame.origin)).collect()
     }
 }

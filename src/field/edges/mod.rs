@@ -37,7 +37,7 @@ use grid::Grid;
 use sampled::Sampled;
 use search::Search;
 use std::sync::Arc;
-use table::Seams;
+use table::EdgeCells;
 
 /// Cells along the longest side of the box of the grid on which edges are searched, unless the
 /// caller says how many. Fewer miss more of what is small; the calls of f grow with the square.
@@ -81,13 +81,13 @@ pub(crate) async fn known_in(
         return Some((cells, Some(KnownPieces::Own(own))));
     }
     if let Some(pieces) = field.evaluator(Frame::for_box(bounds)).pieces() {
-        return Some((pieces.seams_in(bounds, width), None));
+        return Some((pieces.edge_cells(bounds, width), None));
     }
     if field.is_smooth() {
         return None;
     }
     let table = find(field, bounds, cells).await?;
-    Some((table.seams(bounds, width), Some(KnownPieces::Edges(Arc::new(table)))))
+    Some((table.edge_cells(bounds, width), Some(KnownPieces::Edges(Arc::new(table)))))
 }
 
 /// Finds the edges of the surface of a field in a box, in the coordinates of the field. Returns no
@@ -111,7 +111,7 @@ async fn find(field: &dyn Field, bounds: &Bounds, cells: u32) -> Option<EdgeTabl
 /// Cells of a box in which the label changes on the surface of a field, from which its edges can be
 /// traced. Each pair of labels has one cell within some widths. `labels` writes the labels at
 /// points.
-pub(crate) fn seams_between(
+pub(crate) fn edge_cells_between(
     field: &dyn Field,
     labels: &dyn Fn(&[DVec3], &mut [u32]),
     bounds: &Bounds,
@@ -135,14 +135,14 @@ pub(crate) fn seams_between(
             way[usize::from(at_middle[k] != of_point[links[k][0]])] = middles[k];
         }
     }
-    let mut seams = Seams::new(width);
+    let mut found = EdgeCells::new(width);
     for ([a, b], [from, to]) in links.into_iter().zip(ways) {
         let place = from.midpoint(to);
         if bounds.holds(place) {
-            seams.add([of_point[a].min(of_point[b]), of_point[a].max(of_point[b])], place);
+            found.add([of_point[a].min(of_point[b]), of_point[a].max(of_point[b])], place);
         }
     }
-    seams.cells
+    found.cells
 }
 
 #[cfg(test)]

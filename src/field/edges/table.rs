@@ -227,25 +227,25 @@ impl EdgeTable {
         found
     }
 
-    /// Cells of a box from which the edges can be traced, see [`Seams`].
-    pub(crate) fn seams(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let mut seams = Seams::new(width);
+    /// Cells of a box from which the edges can be traced, see [`EdgeCells`].
+    pub(crate) fn edge_cells(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let mut found = EdgeCells::new(width);
         for site in self.sites.iter().filter(|site| bounds.holds(site.position)) {
-            seams.add(site.sides.map(|side| side.label), site.position);
+            found.add(site.sides.map(|side| side.label), site.position);
         }
-        seams.cells
+        found.cells
     }
 }
 
 /// Small cells around points of edges, from which these can be traced. Each pair of labels has one
 /// cell within some widths.
-pub(super) struct Seams {
+pub(super) struct EdgeCells {
     width: f64,
     known: BTreeMap<[u32; 2], Vec<DVec3>>,
     pub(super) cells: Vec<Bounds>,
 }
 
-impl Seams {
+impl EdgeCells {
     pub(super) fn new(width: f64) -> Self {
         Self { width, known: BTreeMap::new(), cells: Vec::new() }
     }

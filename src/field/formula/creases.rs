@@ -1,7 +1,7 @@
 //! The choices of a formula that crease its surface.
 //!
 //! Where a surface crosses the tie of a choice, at which both operands are equal, it has a crease
-//! if the gradient of f jumps there, else a *seam*. |x| makes a seam in a blend that ignores it
+//! if the gradient of f jumps there, else a *smooth tie*. |x| makes one in a blend that ignores it
 //! near x = 0. A minimum of functions whose zeros stay apart makes neither. A search bisects the
 //! box, and excludes by interval arithmetic the cells where f has no zero, or where no choice both
 //! ties and affects f. In each cell that is left, Newton's method finds a place where f and the
@@ -50,7 +50,7 @@ const STEP: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum TieKind {
     /// The surface is smooth where the operands are equal.
-    Seam,
+    Smooth,
     /// The gradient jumps, or the tie is the surface itself, where nothing can be said.
     Crease,
 }
@@ -75,16 +75,16 @@ struct TieCell {
 impl Branches {
     /// Cells of another box, no wider than `width`, that contain all creases in it.
     pub(super) async fn crease_cells(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let width_of_seams = (!self.apart.is_empty()).then_some(2.0 * width);
-        let found = self.search_creases(values, bounds, width, width_of_seams).await;
-        self.with_seams(values, found)
+        let width_of_smooth = (!self.apart.is_empty()).then_some(2.0 * width);
+        let found = self.search_creases(values, bounds, width, width_of_smooth).await;
+        self.with_smooth(values, found)
     }
 
     /// The cells with creases, and those in which different patches meet without an edge.
-    fn with_seams(&mut self, values: &[f64], TieCells { mut creases, seams, .. }: TieCells) -> Vec<Bounds> {
+    fn with_smooth(&mut self, values: &[f64], TieCells { mut creases, smooth, .. }: TieCells) -> Vec<Bounds> {
         let apart = self.apart.clone();
         if !apart.is_empty() {
-            creases.extend(seams.into_iter().filter(|cell| {
+            creases.extend(smooth.into_iter().filter(|cell| {
                 let patches = self.patches_within(values, cell).unwrap_or_default();
                 apart.iter().any(|pair| pair.iter().all(|patch| patches.contains(patch)))
             }));
@@ -126,9 +126,9 @@ impl Branches {
             *self = found.tied.map_or_else(Self::default, |tied| self.separated(&tied, values));
             return found.creases;
         }
-        let is_smooth = self.join_tangent(values, bounds, &found.seams).await;
+        let is_smooth = self.join_tangent(values, bounds, &found.smooth).await;
         self.crease(values, bounds);
-        if is_smooth && !self.has_limits() { Vec::new() } else { self.with_seams(values, found) }
+        if is_smooth && !self.has_limits() { Vec::new() } else { self.with_smooth(values, found) }
     }
 
     /// Records that the branches of a surface in a box meet in creases there.
@@ -146,15 +146,15 @@ impl Branches {
         }
     }
 
-    /// Cells of a box that contain all creases of f, and all seams if `width_of_seams` is given.
-    /// Empty if f has no choices that make creases, or is a product whose factors do not cross
-    /// there.
+    /// Cells of a box that contain all creases of f, and all smooth ties if `width_of_smooth` is
+    /// given. Empty if f has no choices that make creases, or is a product whose factors do not
+    /// cross there.
     async fn search_creases(
         &mut self,
         values: &[f64],
         bounds: &Bounds,
         width: f64,
-        width_of_seams: Option<f64>,
+        width_of_smooth: Option<f64>,
     ) -> TieCells {
         let mut found = TieCells::default();
         let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return found };
@@ -186,8 +186,8 @@ impl Branches {
         found.tied = Some(of(|_| true));
         let creasing = of(|kind| kind == TieKind::Crease);
         found.creases = search.cells(&creasing, TieReach::Reached, width).await;
-        if let Some(width) = width_of_seams.filter(|_| !creasing.is_empty()) {
-            found.seams = search.cells(&of(|_| true), TieReach::Blended, width).await;
+        if let Some(width) = width_of_smooth.filter(|_| !creasing.is_empty()) {
+            found.smooth = search.cells(&of(|_| true), TieReach::Blended, width).await;
         }
         found
     }
@@ -199,7 +199,7 @@ struct TieCells {
     /// Cells with the choices that crease the surface somewhere.
     creases: Vec<Bounds>,
     /// Cells with all choices that are tied on the surface somewhere.
-    seams: Vec<Bounds>,
+    smooth: Vec<Bounds>,
     /// The choices that are tied on the surface somewhere in the box or in the margin of the proofs
     /// around it; none if that is not known.
     tied: Option<Vec<Id>>,
@@ -302,7 +302,7 @@ struct TieSearch<'a> {
 }
 
 impl TieSearch<'_> {
-    /// For each node seam or crease, if it is one of the `choices` and tied somewhere on the
+    /// For each node the kind of its tie, if it is one of the `choices` and tied somewhere on the
     /// surface.
     async fn kinds(&self, choices: &[Id]) -> Vec<Option<TieKind>> {
         let mut kinds = vec![None; self.part.root as usize + 1];
@@ -341,7 +341,7 @@ impl TieSearch<'_> {
                 }
                 let kind = match reach {
                     TieReach::Reached => self.kind(*id, &cell.bounds, &mut scratch, &mut jets),
-                    TieReach::Blended | TieReach::Nowhere => Some(TieKind::Seam),
+                    TieReach::Blended | TieReach::Nowhere => Some(TieKind::Smooth),
                 };
                 if kind.is_none() && cell.depth < DEEPEST {
                     return true;
@@ -366,7 +366,7 @@ impl TieSearch<'_> {
     /// Kind of a choice for which no place is found anywhere. A product is split only if its
     /// factors cross: unsplit, it shows where they touch.
     fn kind_in_doubt(&self, id: Id) -> TieKind {
-        if self.products.contains(&id) { TieKind::Seam } else { TieKind::Crease }
+        if self.products.contains(&id) { TieKind::Smooth } else { TieKind::Crease }
     }
 
     /// Cells in which one of these choices may be tied on the surface with at least this reach.
@@ -551,7 +551,7 @@ impl TieSearch<'_> {
                 if (one - other).length() > SHARP * one.length().max(other.length()) {
                     return Some(TieKind::Crease);
                 }
-                best = Some(TieKind::Seam);
+                best = Some(TieKind::Smooth);
                 break;
             }
         }

@@ -268,7 +268,7 @@ impl Pieces for FormulaEvaluator<'_> {
         &mut **own
     }
 
-    fn seams_in(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    fn edge_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let bounds = self.frame.outward(bounds);
         let cells = self
             .on_branches(|branches, values| slices::complete(branches.crease_cells(values, &bounds, width)));

@@ -16,7 +16,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// Cosine of the largest angle between the normals of two branches in a cell where they meet
-/// without an edge: each turns by less than 15° there. Smaller: seams beside narrower
+/// without an edge: each turns by less than 15° there. Smaller: smooth joins beside narrower
 /// fillets are found, in more time.
 const PARALLEL: f64 = 0.5 * SQRT_3;
 /// Distance between two points at which the normals of two branches are compared, as a share of the
@@ -164,7 +164,7 @@ impl Branches {
     fn look_into(&mut self, values: &[f64], bounds: &Bounds, cell: &Bounds, found: &mut Meetings) {
         let reach = 2.0 * cell.diagonal();
         let mut landed: Vec<Landed> = Vec::new();
-        // They lie a little outside of the corners, so that no seam passes between two cells.
+        // They lie a little outside of the corners: no smooth join passes between two cells.
         let around = Bounds::new(cell.lo() - 0.65 * cell.size(), cell.hi() + 0.85 * cell.size());
         for start in around.spread(2) {
             let Some(place) = self.landed(values, start, reach).filter(|place| bounds.holds(place.position))

@@ -155,7 +155,7 @@ impl Creases {
                 points,
                 corners,
                 is_closed: curve.is_closed,
-                is_seam: curve.is_seam,
+                is_smooth: curve.is_smooth,
                 image: Some(Image { of: curve_place[k]?, pair: number }),
             });
         }

@@ -5,7 +5,7 @@
 //! the mesh on both sides.
 
 use super::meeting::{Third, common_point};
-use super::{Crease, Creases, ONE_CORNER, seam};
+use super::{Crease, Creases, ONE_CORNER, smooth};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::complete;
@@ -16,7 +16,7 @@ impl Creases {
     pub(in super::super) fn beyond(&self, probe: &mut Probe, bounds: &Bounds, wide: &Bounds) -> Option<Self> {
         self.at_box()?;
         let width = Self::width(wide);
-        let cells = probe.field.pieces()?.seams_in(wide, width);
+        let cells = probe.field.pieces()?.edge_cells(wide, width);
         let mut creases = complete(Self::find(probe, wide, &cells, self.unit_cell));
         let [lo, hi] = bounds.single().map(|corner| corner.as_dvec3());
         for axis in 0..3 {
@@ -39,8 +39,8 @@ impl Creases {
             }
             let way = next - here;
             let start = here + way * ((offset - here[axis]) / way[axis]);
-            let place = if curve.is_seam {
-                seam::in_plane(probe, curve.branches[0], axis, offset, start, way.length())
+            let place = if curve.is_smooth {
+                smooth::in_plane(probe, curve.branches[0], axis, offset, start, way.length())
             } else {
                 common_point(probe, curve.branches, third, start, way.length())
             };

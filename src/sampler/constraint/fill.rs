@@ -198,7 +198,7 @@ impl Creases {
             let reach = a.position.distance(b.position);
             let found = if is_end {
                 None
-            } else if curve.is_seam {
+            } else if curve.is_smooth {
                 Meeting::beside_chord(probe, curve.branches, place, b.position - a.position)
             } else {
                 Meeting::of_branches(probe, curve.branches, place, reach, FADED).map(|found| found.position)

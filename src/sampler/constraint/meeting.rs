@@ -30,7 +30,7 @@ pub(super) struct Meeting {
     pub(super) branches: [u32; 2],
     /// Unit vector along the crease.
     pub(super) tangent: DVec3,
-    /// Sine of the angle between the branches; 0 on a [seam](super::seam).
+    /// Sine of the angle between the branches; 0 on a [smooth join](super::smooth).
     pub(super) sine: f64,
 }
 

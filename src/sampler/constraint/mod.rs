@@ -6,8 +6,8 @@
 //! ([`Pieces::label`](crate::field::Pieces::label)). Two patches meet along a *crease*, the curve
 //! on which both branches vanish; it ends at a corner or at the box, or is closed. Where the
 //! factors of a product cross, four patches meet: each factor is two branches, one on either side
-//! of the other factor. Pieces that meet without an edge, yet are not one patch, have a [seam]
-//! instead of a crease.
+//! of the other factor. Pieces that meet without an edge, yet are not one patch, have a
+//! [smooth join](smooth) instead of a crease.
 //!
 //! 1. *Search.* The field lists the small cells of the box that may hold creases. In each cell
 //!    Newton's method searches for a point on each pair of branches.
@@ -24,7 +24,7 @@ mod cut;
 mod fill;
 mod ladder;
 mod meeting;
-mod seam;
+mod smooth;
 #[cfg(test)]
 mod tests;
 pub(super) mod tips;
@@ -82,7 +82,7 @@ pub(super) struct Crease {
     /// Whether the last point is followed by the first.
     is_closed: bool,
     /// Whether the patches meet without an edge.
-    is_seam: bool,
+    is_smooth: bool,
     /// If this is an image: the crease that it repeats, on the opposite face of a cell.
     image: Option<Image>,
 }
@@ -150,7 +150,7 @@ pub struct Creases {
 }
 
 impl Creases {
-    /// Width of the [cells](crate::field::Pieces::seams_in) in which creases are searched for.
+    /// Width of the [cells](crate::field::Pieces::edge_cells) in which creases are searched for.
     pub(super) fn width(bounds: &Bounds) -> f64 {
         CELL * bounds.diagonal()
     }
@@ -188,7 +188,7 @@ impl Creases {
             }
         }
         creases.trace_from_corners(probe, bounds, step).await;
-        creases.trace_seams(probe, bounds, cells, step).await;
+        creases.trace_smooth_joins(probe, bounds, cells, step).await;
         creases.touch(probe, step).await;
         creases.divide(probe, step);
         if let Some(cell) = unit_cell {
@@ -200,9 +200,15 @@ impl Creases {
         creases
     }
 
-    /// Traces the seams, where different patches meet without an edge, and the creases that start
-    /// at their ends.
-    async fn trace_seams(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, cells: &[Bounds], step: f64) {
+    /// Traces the smooth joins, where different patches meet without an edge, and the creases that
+    /// start at their ends.
+    async fn trace_smooth_joins(
+        &mut self,
+        probe: &mut Probe<'_>,
+        bounds: &Bounds,
+        cells: &[Bounds],
+        step: f64,
+    ) {
         let pairs = probe.field.tangent_pairs();
         if pairs.is_empty() {
             return;
@@ -214,7 +220,7 @@ impl Creases {
                 if self.runs_by(cell.middle(), *pair, 0.5 * cell.diagonal(), step) {
                     continue;
                 }
-                let start = Meeting::on_seam(probe, *pair, cell).filter(|start| {
+                let start = Meeting::on_smooth_join(probe, *pair, cell).filter(|start| {
                     bounds.holds(start.position) && !self.has_point(start.position, *pair, step)
                 });
                 if let Some(start) = start

@@ -1,7 +1,7 @@
 //! Follows a crease from one of its points to both ends.
 
 use super::meeting::{FADED, MOST_TURN, Meeting, Third, common_point, touching_point};
-use super::{BESIDE, Crease, Creases, NEAR, ONE_CORNER, ONE_END, seam, touch};
+use super::{BESIDE, Crease, Creases, NEAR, ONE_CORNER, ONE_END, smooth, touch};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
@@ -41,10 +41,10 @@ pub(super) fn trace<'a>(
     step: f64,
 ) -> Work<'a, ()> {
     Box::pin(async move {
-        if !start.is_seam() && start.is_touched(probe, step) {
+        if !start.is_smooth() && start.is_touched(probe, step) {
             return;
         }
-        let patches = if start.is_seam() { start.branches.to_vec() } else { start.patches(probe, step) };
+        let patches = if start.is_smooth() { start.branches.to_vec() } else { start.patches(probe, step) };
         let are_left = start.are_left(probe, &patches, step);
         let mut walk = Walk { probe, bounds, start, patches: &patches, are_left: are_left.as_deref(), step };
         let mut points = vec![start.position];
@@ -81,7 +81,7 @@ pub(super) fn trace<'a>(
             points,
             corners: [first, end],
             is_closed,
-            is_seam: start.is_seam(),
+            is_smooth: start.is_smooth(),
             image: None,
         });
     })
@@ -111,8 +111,8 @@ impl Walk<'_, '_> {
         while points.len() < MOST_STEPS {
             pause().await;
             let here = last.position;
-            let next = if self.start.is_seam() {
-                self.next_of_seam(&last, direction, is_forward)
+            let next = if self.start.is_smooth() {
+                self.next_of_smooth_join(&last, direction, is_forward)
             } else {
                 self.next(here, direction)
             };
@@ -123,8 +123,8 @@ impl Walk<'_, '_> {
                 let end = self.turn(last, next, direction, is_forward);
                 return self.end_at(creases, [here, end], self.patches, ONE_END, points);
             }
-            let is_seam = self.start.is_seam();
-            if !is_seam && !self.is_same_crease(&next, self.step) && !self.is_touched(here, &next) {
+            let is_smooth = self.start.is_smooth();
+            if !is_smooth && !self.is_same_crease(&next, self.step) && !self.is_touched(here, &next) {
                 return self.end_before(creases, here, &next, points);
             }
             if !self.bounds.holds(next.position) {
@@ -172,14 +172,19 @@ impl Walk<'_, '_> {
         None
     }
 
-    /// The next point of a seam, and the length of the step.
-    fn next_of_seam(&mut self, last: &Meeting, direction: DVec3, is_forward: bool) -> Option<(Meeting, f64)> {
+    /// The next point of a smooth join, and the length of the step.
+    fn next_of_smooth_join(
+        &mut self,
+        last: &Meeting,
+        direction: DVec3,
+        is_forward: bool,
+    ) -> Option<(Meeting, f64)> {
         let [a, b] = self.start.branches;
         let is_first_left = self.are_left.is_some_and(|are_left| are_left[0]) == is_forward;
         let sides = if is_first_left { [a, b] } else { [b, a] };
         let mut length = self.step;
         for _ in 0..=HALVINGS {
-            if let Some(mut next) = last.along_seam(self.probe, sides, direction, length) {
+            if let Some(mut next) = last.along_smooth_join(self.probe, sides, direction, length) {
                 if !is_forward {
                     next.tangent = -next.tangent;
                 }
@@ -374,8 +379,8 @@ impl Walk<'_, '_> {
         let place = here + way * share;
         let branches = self.start.branches;
         let end = match plane {
-            Third::Plane { axis, offset } if self.start.is_seam() => {
-                seam::in_plane(self.probe, branches[0], axis, offset, place, way.length())
+            Third::Plane { axis, offset } if self.start.is_smooth() => {
+                smooth::in_plane(self.probe, branches[0], axis, offset, place, way.length())
             }
             _ => common_point(self.probe, branches, plane, place, way.length()),
         };

@@ -499,7 +499,8 @@ impl Core {
         to_js(&self.session.run.cancel())
     }
 
-    /// Rows of the columns: one per particle, and one per side for particles on creases and seams.
+    /// Rows of the columns: one per particle, and one per side for particles on creases and smooth
+    /// joins.
     pub fn count(&self) -> usize {
         self.session.run.rows()
     }
@@ -523,8 +524,8 @@ impl Core {
         (from..self.session.run.rows()).flat_map(|i| particles.place(i).to_array()).collect()
     }
 
-    /// For rows of particles on creases, seams and tips, which come first, the first row of the
-    /// same particle; empty without any.
+    /// For rows of particles on creases, smooth joins and tips, which come first, the first row of
+    /// the same particle; empty without any.
     pub fn twins(&self) -> Vec<u32> {
         self.column(&self.session.run.particles().twins, 0)
     }
@@ -534,7 +535,7 @@ impl Core {
         self.pairs_along(true)
     }
 
-    /// The pairs of rows that a smooth seam connects, two numbers each; empty without seams.
+    /// The pairs of rows that a smooth join connects, two numbers each; empty without them.
     pub fn seams(&self) -> Vec<u32> {
         self.pairs_along(false)
     }

@@ -36,17 +36,17 @@ export const MEASURED = /** @type {const} */ ([
 
 export class Columns {
   constructor() {
-    /** Number of rows: one for each particle, or one on each side for those on creases and seams. */
+    /** Number of rows: one for each particle, or one on each side for those on creases and smooth joins. */
     this.count = 0;
     /** Number of particles. */
     this.particles = 0;
     /**
-     * For each row on a crease, a seam or a tip, the first row of the same particle. Such rows come first; else empty.
+     * For each row on a crease, a smooth join or a tip, the first row of the same particle. Such rows come first; else empty.
      */
     this.twins = new Uint32Array(0);
     /** Pairs of rows that a crease connects. */
     this.segments = new Uint32Array(0);
-    /** Pairs of rows that a seam connects, where patches meet without an edge. */
+    /** Pairs of rows on smooth joins, where patches meet without an edge. */
     this.seams = new Uint32Array(0);
     /** The last generation level. */
     this.lastLevel = 0;
@@ -83,7 +83,7 @@ export class Columns {
     this.component = null;
     /**
      * Index of the smooth patch on which the particle lies, and the first row of the particle: a particle on a crease
-     * or a seam has a row on each side. Null without creases and seams.
+     * or a smooth join has a row on each side. Null without these.
      * @type {Uint32Array | null}
      */
     this.patch = null;
@@ -161,7 +161,7 @@ export class Columns {
 
   /** The kinds of curves from which the fronts start. */
   get curves() {
-    return [...(this.segments.length > 0 ? ['creases'] : []), ...(this.seams.length > 0 ? ['seams'] : [])];
+    return [...(this.segments.length > 0 ? ['creases'] : []), ...(this.seams.length > 0 ? ['smooth joins'] : [])];
   }
 
   /** The positions to draw. */
@@ -221,7 +221,7 @@ export class Columns {
     const { fresh, seeds, fates } = tally;
     for (let i = first; i < last; i += 1) {
       const level = levels[i];
-      // A particle on a crease or a seam has a row, with children, on each side.
+      // A particle on a crease or a smooth join has a row, with children, on each side.
       if (!this.isFurther(i)) {
         fresh[level] += 1;
         if (parents[i] === NO_PARENT) seeds[level] += 1;

@@ -1358,8 +1358,8 @@ export type Report = {
   /** How the edges were found, if they were searched for in the values of f; none if the field
   * itself says which pieces meet at its edges, and if no edge was found. */
   edges_found: string | null,
-  /** Curves of particles along which patches of the surface meet without an edge; none if there
-  * are none. */
+  /** Smooth joins: curves of particles along which patches of the surface meet without an edge;
+  * none if there are none. */
   seams: number | null,
   /** Quality of the present particles; none without particles, or if they were not measured. */
   quality: Figures | null,

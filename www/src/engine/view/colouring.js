@@ -191,9 +191,9 @@ const byValues = (title, valuesIn) => ({
 /** The colouring by `colour = …` in a formula. */
 const OWN_NUMBER = byValues('Its own colour', ({ own }) => own?.colour);
 
-/** Labels for the border class if the surface has edges, and if it has seams. */
+/** Labels for the border class if the surface has edges, and if it has smooth joins. */
 const BESIDE_EDGES = 'at an edge or the box';
-const BESIDE_SEAMS = 'at an edge, a seam or the box';
+const BESIDE_SEAMS = 'at an edge, a smooth join or the box';
 
 /**
  * A colouring by classes. `classOf` returns the class of a particle; it is null until the classes are known.

@@ -1,6 +1,6 @@
 /**
  * Uploads the creases of a surface to the graphics device as thin lines. Particles on creases are drawn as dots on the
- * lines, because a disc on either side would stick out beyond the edge. Particles on a seam without an edge are
+ * lines, because a disc on either side would stick out beyond the edge. Particles on a smooth join are
  * ordinary discs.
  *
  * @module

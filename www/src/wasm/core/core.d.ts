@@ -85,7 +85,8 @@ export class Core {
      */
     constructor();
     /**
-     * Rows of the columns: one per particle, and one per side for particles on creases and seams.
+     * Rows of the columns: one per particle, and one per side for particles on creases and smooth
+     * joins.
      */
     count(): number;
     /**
@@ -267,7 +268,7 @@ export class Core {
      */
     residual(): Float32Array<ArrayBuffer>;
     /**
-     * The pairs of rows that a smooth seam connects, two numbers each; empty without seams.
+     * The pairs of rows that a smooth join connects, two numbers each; empty without them.
      */
     seams(): Uint32Array<ArrayBuffer>;
     /**
@@ -347,8 +348,8 @@ export class Core {
      */
     triangles(): Uint32Array<ArrayBuffer>;
     /**
-     * For rows of particles on creases, seams and tips, which come first, the first row of the
-     * same particle; empty without any.
+     * For rows of particles on creases, smooth joins and tips, which come first, the first row of
+     * the same particle; empty without any.
      */
     twins(): Uint32Array<ArrayBuffer>;
     /**

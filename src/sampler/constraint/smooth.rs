@@ -1,8 +1,8 @@
-//! Seams: curves along which two patches meet without an edge, yet are not one patch, since they or
-//! their neighbours meet at an angle elsewhere. A fillet that fades out has one.
+//! Smooth joins: curves along which two patches meet without an edge, yet are not one patch, since
+//! they or their neighbours meet at an angle elsewhere. A fillet that fades out has one.
 //!
-//! Next to a seam, too, both branches vanish up to the second order, so that their common zeros
-//! hardly determine its place. It is found on the surface, by bisection between two points of
+//! Next to a smooth join, too, both branches vanish up to the second order, so that their common
+//! zeros hardly determine its place. It is found on the surface, by bisection between two points of
 //! different patches.
 
 use super::meeting::{MOST_TURN, Meeting, branch, limits};
@@ -12,14 +12,15 @@ use crate::math::{Bounds, SHARP, SQRT_3, tangent_frame};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
-/// Bisections of the way between two points on either side of a seam, to rounding.
+/// Bisections of the way between two points on either side of a smooth join, to rounding.
 const HALVINGS: u32 = 40;
-/// Radius of the circle around a point of a seam from which its direction is found, as a share of
-/// the reach.
+/// Radius of the circle around a point of a smooth join from which its direction is found, as a
+/// share of the reach.
 const AROUND: f64 = 0.02;
 /// Points of that circle.
 const POINTS: u32 = 16;
-/// Distance on either side of a chord at which a seam is searched for, as a share of the reach.
+/// Distance on either side of a chord at which a smooth join is searched for, as a share of the
+/// reach.
 const BESIDE_CHORD: f64 = 0.2;
 
 /// A point of the surface.
@@ -63,12 +64,12 @@ fn turn(pair: [u32; 2], mut at: impl FnMut(f64) -> Option<Landed>) -> Option<DVe
 
 impl Meeting {
     /// Whether the patches meet without an edge.
-    pub(super) fn is_seam(&self) -> bool {
+    pub(super) fn is_smooth(&self) -> bool {
         self.sine == 0.0
     }
 
     /// A point in or near a cell where these patches meet without an edge.
-    pub(super) fn on_seam(probe: &mut Probe, pair: [u32; 2], cell: &Bounds) -> Option<Self> {
+    pub(super) fn on_smooth_join(probe: &mut Probe, pair: [u32; 2], cell: &Bounds) -> Option<Self> {
         let reach = cell.diagonal();
         // Pieces that meet at an angle have a crease there. A vanishing gradient decides nothing.
         let [u, v] = pair.map(|patch| normal(probe, patch, cell.middle()));
@@ -76,7 +77,7 @@ impl Meeting {
             return None;
         }
         let mut ends: [Option<Landed>; 2] = [None; 2];
-        // A seam may run along the face of a cell.
+        // A smooth join may run along the face of a cell.
         let around = Bounds::new(cell.lo() - 0.3 * cell.size(), cell.hi() + 0.4 * cell.size());
         // Skips a cell if the corners of the box around it all have the same patch.
         let [one, others @ ..] = around.corners().map(|corner| probe.field.label(corner));
@@ -136,8 +137,8 @@ impl Meeting {
         Some(Self { position, branches: pair, tangent, sine: 0.0 })
     }
 
-    /// The next point of a seam, `length` away, with these patches on its left and on its right.
-    pub(super) fn along_seam(
+    /// The next point of a smooth join, `length` away, with these patches on its left and right.
+    pub(super) fn along_smooth_join(
         &self,
         probe: &mut Probe,
         sides: [u32; 2],
@@ -158,7 +159,7 @@ impl Meeting {
         is_ahead.then_some(Self { position, tangent: way, ..*self })
     }
 
-    /// The point of the seam near the point `place` of a chord with the direction `way`.
+    /// The point of the smooth join near the point `place` of a chord with the direction `way`.
     pub(super) fn beside_chord(probe: &mut Probe, pair: [u32; 2], place: DVec3, way: DVec3) -> Option<DVec3> {
         let reach = way.length();
         let first = landed(probe, place, reach)?;

@@ -89,7 +89,7 @@ fn a_solid_is_closed_where_a_fillet_becomes_narrower_than_a_particle() {
 }
 
 #[test]
-fn a_seam_that_runs_to_the_box_ends_on_its_faces() {
+fn a_smooth_join_that_runs_to_the_box_ends_on_its_faces() {
     let field = Formula::parse("z = max(x, 0)*max(y, 0)").expect("a formula");
     let bounds = Bounds::cube(2.0);
     for settings in [Settings::with_count(4_000), Settings::with_count(4_000).refined()] {
@@ -99,7 +99,7 @@ fn a_seam_that_runs_to_the_box_ends_on_its_faces() {
         let topology = &sample.mesh().topology;
         assert_eq!((topology.components.len(), topology.euler()), (1, 1), "{what}");
         assert_eq!(topology.borders.len(), 1, "{what}");
-        // Both seams have a particle on the face to which they run.
+        // Both smooth joins have a particle on the face to which they run.
         for end in [DVec3::new(-2.0, 0.0, 0.0), DVec3::new(0.0, -2.0, 0.0)] {
             let distances = (0..sample.particles().len()).map(|i| sample.particles().place(i).distance(end));
             let least = distances.fold(f64::MAX, f64::min);
@@ -109,7 +109,8 @@ fn a_seam_that_runs_to_the_box_ends_on_its_faces() {
 }
 
 /// The sample of z = max(x, 0) max(y, 0) in a cube, which has an edge where one coordinate is 0 and
-/// the other positive, and a seam where it is negative: the angle at the edge is that other one's.
+/// the other positive, and a smooth join where it is negative: the angle at the edge is that other
+/// one's.
 fn half_edged(settings: &Settings) -> Sample {
     let field = Formula::parse("z = max(x, 0)*max(y, 0)").expect("a formula");
     sample(field, &settings.in_box(Bounds::cube(2.0))).expect("a sample")
@@ -134,7 +135,7 @@ fn a_piece_of_a_curve_has_an_edge_where_the_normals_of_its_patches_differ() {
 
 #[test]
 #[ignore = "slow: for cargo xtask test --all"]
-fn creases_are_counted_without_the_seams_that_prolong_them() {
+fn creases_are_counted_without_the_smooth_joins_that_prolong_them() {
     let count = |text: &str, count, bounds: Option<Bounds>| {
         let field = Formula::parse(text).expect("a formula");
         let settings = Settings::with_count(count);
@@ -147,7 +148,7 @@ fn creases_are_counted_without_the_seams_that_prolong_them() {
     assert_eq!(half_edged, [Some(1), Some(2), Some(1)]);
     for number in [3_000, 8_000] {
         // The edge before the fillet begins, which ends there, and the rim of the solid, closed at
-        // the other end of that edge. The seams on both sides of the fillet meet where it begins.
+        // the other end of that edge. The smooth joins on both sides of the fillet meet where it begins.
         let found = count("max(smin(z, x, max(0, -y)), hypot(x, y, z) - 1)", number, None);
         assert_eq!(found, [Some(2), Some(2), Some(1)], "{number}");
         // Two edges that meet where both fade out, and the rim, of which they are chords.
@@ -162,7 +163,7 @@ fn creases_are_counted_without_the_seams_that_prolong_them() {
 }
 
 #[test]
-fn vertices_are_split_at_edges_and_not_at_seams() {
+fn vertices_are_split_at_edges_and_not_at_smooth_joins() {
     let sample = half_edged(&Settings::with_count(4_000));
     let particles = sample.particles();
     let [joined, split] =
