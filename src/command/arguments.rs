@@ -341,9 +341,10 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
-    /// File of points or of a mesh: PLY, OBJ, STL, OFF, GLB, PCD, or text with one point on a line
-    /// (XYZ, PTS, CSV), up to 50 MB; `-` is standard input. A smooth surface is fitted to all of
-    /// them. Normals come from the file, else from its faces, else they are estimated
+    /// File of points, or of a mesh whose vertices are taken: PLY, OBJ, STL, OFF, GLB, 3MF, PCD, or
+    /// text with one point on a line (XYZ, PTS, CSV), up to 50 MB; `-` is standard input. A smooth
+    /// surface is fitted to all points. Normals come from the file, else from its faces, else they
+    /// are estimated
     #[arg(long, value_name = "FILE", conflicts_with = "surface", help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 

@@ -6,6 +6,7 @@
 
 use crate::golden::checkout;
 use marching_particles::math::shortest_text;
+use marching_particles::pointcloud::InputFormat;
 use marching_particles::session::{Condition, Setting, SettingKind, SettingValue, settings};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -343,6 +344,31 @@ fn every_setting_is_declared_with_its_kind_in_python_and_for_npm() {
             found,
             kinds("bool", "SupportsIndex", "SupportsFloat", "_Size", "SupportsFloat, str", '"'),
         );
+    }
+}
+
+#[test]
+fn every_list_of_the_formats_of_points_is_complete() {
+    let names: Vec<String> = InputFormat::ALL.iter().map(ToString::to_string).collect();
+    let list = names.join(", ");
+    let listed = list.strip_suffix(", XYZ").expect("text comes last");
+    for page in [
+        "CHANGELOG.md",
+        "python/package/marching_particles/_fields.py",
+        "src/command/arguments.rs",
+        "src/pointcloud/mod.rs",
+        "www/package/README.md",
+        "www/package/index.d.ts",
+    ] {
+        let text = read(page).replace("///", "");
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(listed), "{page} does not name {listed}");
+    }
+    let rows = names.iter().map(|name| ("docs/files.md", format!("\n| {name}")));
+    let types =
+        names.iter().map(|name| ("www/src/engine/constants.js", format!(".{},", name.to_lowercase())));
+    for (page, wanted) in rows.chain(types) {
+        assert!(read(page).contains(&wanted), "{page} does not name {wanted:?}");
     }
 }
 

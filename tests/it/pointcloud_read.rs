@@ -497,7 +497,7 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
         (b"PK\x03\x04rest", "archive: the file is cut off or damaged"),
         (
             b"\x1f\x8b\x08",
-            "this is a gzip archive, and what is read is PLY, OBJ, STL, OFF, GLB, PCD and text with a point a line (XYZ, PTS, CSV); unpack it",
+            "this is a gzip archive, and what is read is PLY, OBJ, STL, OFF, GLB, 3MF, PCD and text with one point on a line (XYZ, PTS, CSV); unpack it",
         ),
         (
             b"\x93NUMPY\x01\x00",

@@ -94,13 +94,13 @@ def fit_points(points, normals=None, *, centres=200, beyond_points="cut"):
 
     Args:
         points: Array (n, 3), in any unit of length; or a mesh of trimesh or PyVista, or the path of
-            a file of points or of a mesh: PLY, OBJ, STL, OFF, GLB, PCD, XYZ, PTS or CSV. A mesh
-            gives its vertices and normals.
+            a file of points or of a mesh: PLY, OBJ, STL, OFF, GLB, 3MF, PCD, XYZ, PTS or CSV. A
+            mesh gives its vertices and normals.
         normals: Array (n, 3) of outward normals of any length; without it they are estimated.
         centres: Number of radial functions, 100 to 800. The time grows with its cube.
         beyond_points: ``"cut"``: the surface ends at the border of the points, and bridges gaps of
-            a few of their spacings; ``"kept"``: it goes on. A solid that is put together of it and
-            others has all of it.
+            a few of their spacings; ``"kept"``: it continues beyond them. As an operand of
+            :func:`union` and the like it always continues.
 
     Returns:
         A :class:`Model`, to be given to :func:`sample`.

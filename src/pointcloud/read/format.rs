@@ -47,14 +47,31 @@ impl fmt::Display for InputFormat {
 }
 
 impl InputFormat {
+    /// The formats, one of each name, in the order in which texts list them.
+    pub const ALL: &[Self] = &[
+        Self::Ply,
+        Self::Obj,
+        Self::StlText,
+        Self::Off,
+        Self::Glb,
+        #[cfg(feature = "images")]
+        Self::ThreeMf,
+        Self::Pcd,
+        Self::Xyz,
+    ];
+
     /// The extension of `name`, if it belongs to another format.
-    pub(super) fn contradicting_extension(self, name: &str) -> Option<&'static str> {
+    pub(super) fn contradicting_extension(self, name: &str) -> Option<String> {
         let extension = extension(name);
-        let known = ["ply", "obj", "stl", "off", "pcd", "glb", "3mf", "xyz"]
-            .into_iter()
-            .find(|known| *known == extension)?;
-        (!self.to_string().eq_ignore_ascii_case(known)).then_some(known)
+        let named = |format: &Self| format.to_string().eq_ignore_ascii_case(&extension);
+        (Self::ALL.iter().any(named) && !named(&self)).then_some(extension)
     }
+}
+
+/// The names of the formats that are not text with one point on a line.
+pub(super) fn names() -> String {
+    let names = InputFormat::ALL.iter().filter(|format| **format != InputFormat::Xyz);
+    names.map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// Extension of a file name, in lower case.

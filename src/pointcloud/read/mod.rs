@@ -1,5 +1,5 @@
 //! Reader of files of points and meshes: PLY, OBJ, STL, OFF, GLB, 3MF, PCD, and text with one point
-//! per line, detected by content.
+//! on a line, detected by content.
 //!
 //! A file is read in slices of work, so the caller can show progress. Its content is not trusted:
 //! the counts in a header are compared with the size of the file before memory is allocated, and
@@ -44,7 +44,8 @@ pub enum ReadError {
     },
     /// The file is in no known format.
     #[error(
-        "this is {found}, and what is read is PLY, OBJ, STL, OFF, GLB, PCD and text with a point a line (XYZ, PTS, CSV); {advice}"
+        "this is {found}, and what is read is {} and text with one point on a line (XYZ, PTS, CSV); {advice}",
+        format::names()
     )]
     Unknown {
         /// Name of the format that the content resembles.

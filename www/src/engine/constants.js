@@ -24,7 +24,7 @@ export const MOST_PARAMETERS = 64;
 /** Largest number of pulls on a surface. */
 export const MOST_PULLS = 32;
 /** File extensions of points for `openFile`, in the form of a file chooser's `accept` attribute. */
-export const FILE_TYPES = '.ply,.obj,.stl,.off,.glb,.pcd,.xyz,.pts,.csv,.txt,.asc';
+export const FILE_TYPES = '.ply,.obj,.stl,.off,.glb,.3mf,.pcd,.xyz,.pts,.csv,.txt,.asc';
 /** File extensions of triangle meshes, whose files may hold only points. */
 export const MESH_TYPES = '.stl,.obj,.ply,.off,.glb,.3mf';
 /** File extensions of three-dimensional images and of the data files of their headers. */

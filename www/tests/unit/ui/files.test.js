@@ -26,7 +26,7 @@ const info = /** @type {ModelInfo} */ ({
 describe('a file of points', () => {
   it('has its formats and its limit named', () => {
     const engine = /** @type {any} */ ({ description: { value: description } });
-    expect(filesOf(engine)).toBe('PLY, OBJ, STL, OFF, GLB, PCD, XYZ, PTS or CSV, up to 50\u202fMB');
+    expect(filesOf(engine)).toBe('PLY, OBJ, STL, OFF, GLB, 3MF, PCD, XYZ, PTS or CSV, up to 50\u202fMB');
   });
 
   it('is told from a drag of text', () => {
