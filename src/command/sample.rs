@@ -361,11 +361,11 @@ fn formats<T>(
                 let known = known.join(", ");
                 let name = path.display();
                 Failure::Usage(if let Some(option) = of_other(&extension(arguments, path)) {
-                    format!("{name} is a file of {option}: known here are {known}")
+                    format!("{name} is a file of {option}; formats here are {known}")
                 } else if is_standard(path) {
-                    format!("standard output takes its format from --format; known here are {known}")
+                    format!("standard output takes its format from --format; formats here are {known}")
                 } else {
-                    format!("{name} has no extension that names a format; known are {known}")
+                    format!("{name} has no extension that names a format; formats here are {known}")
                 })
             })
         })

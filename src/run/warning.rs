@@ -619,8 +619,8 @@ impl fmt::Display for Warning {
                 ]);
                 write!(
                     f,
-                    "The surface {meets}. f has no gradient there, first near {}, and the sheets are sampled up to it: pieces that meet only \
-                     there count as components of their own, and the Euler number is that of the pieces.",
+                    "The surface {meets}. f has no gradient there, first near {}, and the sheets are sampled up to it: parts that meet only \
+                     there count as components of their own, also in the Euler number.",
                     place_text(*position, *length)
                 )
             }

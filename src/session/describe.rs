@@ -360,7 +360,7 @@ const COLOURS: &[Colour] = &[
     Colour {
         id: ColourMode::Level,
         label: "Generation level",
-        help: "Rings in the order in which they were placed; the colours repeat every twelve levels.",
+        help: "Rings in the order in which they were placed, from blue at the seed to sand at the last one, with a light ring every eighth level.",
         unit: "",
     },
     Colour {

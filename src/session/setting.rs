@@ -349,7 +349,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             "box_mode",
             BoxMode::default(),
             "Box",
-            "Fit: around the surface of a formula, with 5 % to spare; surfaces without end are cut. Fixed: as it is.",
+            "Fit: the box follows the surface of a formula, with 5 % to spare; a surface without end is cut. Fixed: the box stays as it is.",
             BOXES,
         )),
         of_box(choice(
@@ -399,7 +399,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
             "size_mode",
             run.size_mode,
             "Size by",
-            "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
+            "Radius: you set the size of the particles, or for adaptive sampling the law of their sizes. Count: you set their number.",
             SIZES,
         ),
         Setting {
@@ -426,7 +426,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "counting",
                 run.counting,
                 "Count met",
-                "Exactly: a front gives up its most crowded particles, or gets more in its largest holes, before the relaxation. Blue noise and random points always have the wanted count.",
+                "Nearly: to within 3 %. Exactly: before the relaxation the most crowded particles of the front are removed, or some are added in its largest holes. Blue noise and random points always have the wanted count.",
                 COUNTINGS,
             ))
         },
@@ -436,7 +436,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "radius_law",
                 run.radius_law,
                 "Radius law",
-                "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
+                "How the radius follows from the principal curvatures: by the chord error, by the larger one of them, or by their sum, as in the paper, which vanishes on saddles.",
                 LAWS,
             )
         },
@@ -456,7 +456,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "curvature_scale",
                 run.curvature_scale,
                 "Curvature scale",
-                "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
+                "Radius of a particle over the radius of curvature 1/κ of the surface there: about half the angle between the normals of neighbours, in radians.",
             ))
         },
         Setting {
@@ -465,7 +465,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "radius_min_share",
                 run.radius_min_share,
                 "Smallest radius",
-                "No particle is smaller than this share of the box diagonal.",
+                "Radius of the smallest particles, at least, as a share of the box diagonal.",
             )))
         },
         Setting {
@@ -474,7 +474,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "radius_max_share",
                 run.radius_max_share,
                 "Largest radius",
-                "No particle is larger than this share of the box diagonal.",
+                "Radius of the largest particles, at most, as a share of the box diagonal.",
             )))
         },
         Setting {
@@ -483,7 +483,7 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "grading",
                 run.grading,
                 "Grading",
-                "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
+                "How fast the radius may change along the surface: a slope L, a number without unit. The radii of neighbours differ by a factor of at most (1 + L)/(1 − L), which is 1.5 for L = 0.2.",
             ))
         },
         Setting {
@@ -498,14 +498,14 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "relax_steps",
                 run.relax_steps,
                 "Relaxation",
-                "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
+                "Number of relaxation steps after the front, in which particles push each other apart. The paper takes ten.",
             )
         },
         advanced(choice(
             "method",
             run.method,
             "Method",
-            "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even.",
+            "Front: a front and its relaxation, as in the paper. Refined: a coarse front is brought into order and its edges are halved, which is more even and takes longer.",
             METHODS,
         )),
         Setting {
@@ -524,14 +524,14 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "match_tolerance",
                 run.match_tolerance,
                 "Match tolerance",
-                "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
+                "Distance, in units of 2r, within which a child is matched with an existing particle instead of being added. Smaller: more and closer particles where fronts meet. Larger: wider gaps.",
             ))
         },
         advanced(choice(
             "gaps",
             run.gaps,
             "Gaps",
-            "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
+            "Fill: where fronts meet, gaps that are wide enough for a particle get one. Leave: they stay for the relaxation to close, as in the paper.",
             GAPS,
         )),
         Setting {
@@ -542,14 +542,14 @@ pub(super) fn with_values(run: &Settings) -> Vec<Setting> {
                 "seed",
                 run.seed,
                 "Seed",
-                "Chooses the point on the surface where the front begins.",
+                "A whole number that chooses the point on the surface where the front begins.",
             ))
         },
         advanced(particles(number(
             "max_particles",
             run.max_particles,
             "Limit",
-            "The run stops when it has placed this many.",
+            "Largest number of particles: the run stops when it has placed as many.",
         ))),
     ]
 }

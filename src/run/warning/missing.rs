@@ -40,8 +40,8 @@ pub(super) fn without_particle(
 pub(super) fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Result {
     match *doubt {
         Doubt::NoBounds => f.write_str(
-            "A small component may be missing. The function has no bounds by which a proof could find it, and the survey's grid may \
-             pass it over.",
+            "A small component may be missing. The function has no bounds by which a proof could find it, and the grid of the search \
+             may miss it.",
         ),
         Doubt::Creases => f.write_str(
             "A small component may be missing. The creases of the surface were searched, not proven to be all.",

@@ -41,7 +41,7 @@ export class Columns {
     /** Number of particles. */
     this.particles = 0;
     /**
-     * For each row on a crease, a smooth join or a tip, the first row of the same particle. Such rows come first; else empty.
+     * For each row on a crease, a smooth join or a tip, the first row of its particle. They come first; else empty.
      */
     this.twins = new Uint32Array(0);
     /** Pairs of rows that a crease connects. */

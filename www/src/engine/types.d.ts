@@ -95,7 +95,7 @@ export interface ColumnRange {
   radii: Float32Array;
   levels: Uint32Array;
   parents: Uint32Array;
-  /** the rows where patches meet and the pairs between which a crease or a smooth join continues, where they have changed */
+  /** the rows where patches meet and the pairs that a crease or a smooth join connects, where they have changed */
   creases?: Pick<Columns, 'twins' | 'segments' | 'seams'> | null;
   /** null for columns sent after the run, of as many particles */
   progress?: CoreProgress | null;

@@ -565,8 +565,8 @@ fn standard_output_takes_a_file_and_standard_input_points() {
     assert_eq!(json["model"]["name"], "standard input");
 
     let mesh = [&given[..], &["--mesh", "-"]].concat();
-    assert!(fails(2, &mesh).contains("--format; known here are glb, "));
-    assert!(fails(2, &[&mesh[..], &["--format", "csv"]].concat()).contains("known here are glb, "));
+    assert!(fails(2, &mesh).contains("--format; formats here are glb, "));
+    assert!(fails(2, &[&mesh[..], &["--format", "csv"]].concat()).contains("formats here are glb, "));
     assert!(fails(2, &[&given[..], &["--format", "ply"]].concat()).contains("--out - or --mesh -"));
     let twice = [&mesh[..], &["--out", "-", "--format", "ply"]].concat();
     assert!(fails(2, &twice).contains("- is to be written twice"));

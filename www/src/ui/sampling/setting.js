@@ -38,13 +38,24 @@ export function createSetting(engine, all, info, paint = null) {
     label,
     control,
   );
-  const help = () => ({ title: info.label, text: info.help });
+  const help = () => ({ title: info.label, text: `${info.help}${defaultOf(info)}` });
   // The popover is above, since below it would cover the next row.
   explain(element, help, { side: 'above' });
   // Touch has no hover, so a tap on the label shows the explanation.
   explain(label, help, { tap: true, side: 'above' });
   return element;
 }
+
+/** Returns the sentence on the value that a setting has by itself. @param {SettingInfo} info */
+function defaultOf({ kind, choices, unit, default: own }) {
+  if (kind === 'text') return '';
+  if (kind === 'choice') return ` Default: ${choices?.find(({ value }) => value === own)?.label}.`;
+  return ` Default: ${inWords({ kind, unit }, Number(own))}.`;
+}
+
+/** Returns a value in words, with its unit. @param {Pick<SettingInfo, 'kind' | 'unit'>} info @param {number} value */
+const inWords = ({ kind, unit }, value) =>
+  `${kind === 'integer' ? formatCount(value) : formatSignificant(value * (unit === '%' ? 100 : 1))}${unit ? ` ${unit}` : ''}`;
 
 /** @param {SettingInfo} info */
 const kindOf = (info) =>
@@ -85,8 +96,7 @@ function createNumber(engine, info, value) {
     scale: { min: info.min, max: info.max, step: info.step, scale: info.scale, integer },
     value: () => Number(value.value),
     factor,
-    describe: (now) =>
-      `${integer ? formatCount(now) : formatSignificant(now * factor)}${info.unit ? ` ${info.unit}` : ''}`,
+    describe: (now) => inWords(info, now),
     change: (now, live) => engine.setSetting(info.name, now, { live }),
     reset: () => engine.resetSetting(info.name),
     read: engine.readNumber,

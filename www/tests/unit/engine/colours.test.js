@@ -195,7 +195,7 @@ describe('colours of particles', () => {
     });
   });
 
-  test('by level begin at the creases, at seams, at tips alone, or at a seed', () => {
+  test('by level begin at the creases, at smooth joins, at tips alone, or at a seed', () => {
     const { segments, seams, twins } = columns;
     const unit = () => legendOf('level', 'light', columns).unit;
     columns.twins = Uint32Array.of(0, 0);
@@ -203,7 +203,7 @@ describe('colours of particles', () => {
     columns.segments = Uint32Array.of(0, 1);
     expect(unit()).toBe('rings from the creases');
     columns.seams = Uint32Array.of(0, 1);
-    expect(unit()).toBe('rings from the creases and seams');
+    expect(unit()).toBe('rings from the creases and smooth joins');
     Object.assign(columns, { segments, seams, twins });
     expect(unit()).toBe('rings around the seed');
   });

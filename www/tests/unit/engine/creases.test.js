@@ -38,13 +38,13 @@ describe('creases', () => {
     expect([0, 2, 4].map((i) => columns.curveAt(i))).toEqual([null, null, null]);
   });
 
-  it('are told from seams, whose particles are discs', () => {
+  it('are told from smooth joins, whose particles are discs', () => {
     const columns = creased();
-    // A crease of one particle more, which a seam prolongs.
+    // A crease of one particle more, which a smooth join prolongs.
     columns.twins = Uint32Array.of(0, 0, 2, 2, 4, 4);
     columns.seams = Uint32Array.of(2, 4);
     expect([0, 2, 4].map((i) => columns.curveAt(i))).toEqual(['crease', 'crease', 'seam']);
-    expect(columns.curves).toEqual(['creases', 'seams']);
+    expect(columns.curves).toEqual(['creases', 'smooth joins']);
     expect([...radiiOf(columns, 0, 6)]).toEqual([-1, 0, -2, 0, 3, 0]);
   });
 
