@@ -74,17 +74,18 @@
 //!
 //! # Glossary
 //!
-//! The words of the paper, and a dozen more that the code uses everywhere. One word for one thing.
+//! The words of the paper, and those that the code adds to them. One word for one thing.
 //!
 //! | Term | Meaning |
 //! |---|---|
 //! | particle | A point of the sample, with position, normal and repulsion radius. |
-//! | repulsion radius, r | Half of the wanted distance between neighbours. |
+//! | repulsion radius, r | Half of the wanted distance between neighbours; the size of a particle. |
+//! | spacing | The distance between neighbours, 2r. Of voxels: the distance between their centres. |
 //! | front | The particles of the newest generation level, which grow over the surface. |
 //! | seed | A first particle, from which a front grows. |
 //! | parent, child | A particle, and one that it proposed. |
 //! | slot | One of a parent's places for children; six of them 60° apart in uniform sampling. |
-//! | generation level | The number of parent links from a particle to its seed; a level is placed as one batch. |
+//! | generation level | The number of parent links from a particle to its seed; a level is placed as one batch. A level of a refinement is another thing: one halving of all edges. |
 //! | fate | What became of a slot: open, the parent's, added, matched, not converged, outside, undefined or capped. |
 //! | projection | Moving a point onto the surface: along a circle around its parent, or down the gradient. |
 //! | relaxation | Moving all particles against their repulsion, step by step. |
@@ -94,14 +95,19 @@
 //! | component | A connected part of the surface. |
 //! | body, chip | Of a mesh: a closed component with the walls of its hollows, or an open component; one that is small beside the largest. |
 //! | sheet | A part of the surface that is a graph over its tangent plane. Two sheets may be close in space and far along the surface. |
+//! | shell | The solid that a thickness makes of a surface. |
+//! | survey | The first look at a field, on a grid over the box: area, points where fronts may begin, the precision that particles need. |
+//! | cell | A box of a grid or of a search, unless it is a unit cell, whose opposite faces have the same particles, or a Voronoi cell. |
 //! | residual | \|f\|/\|∇f\|, the distance to the surface to first order. |
 //! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
-//! | crease, corner, patch | A curve along which two smooth parts of the surface meet at an angle; a point where creases meet; such a part. |
+//! | crease, corner, patch | A curve along which two smooth parts of the surface meet at an angle, its sharp edge; a point where creases meet; such a part. |
+//! | edge | Of the surface: a crease. Of a mesh: a side of its faces. |
 //! | piece | A smooth function that gives f in a part of space, as each operand of a maximum does. |
 //! | row | An entry of the particle columns. A particle on a crease or a smooth join has one for each patch. |
 //! | smooth join | A curve along which two patches meet without an edge; `seams` in reports and columns. |
 //! | seam | A line along which fronts meet out of step: its particles have five or seven neighbours. |
-//! | gap | A hole between fronts that is wide enough for a particle. |
+//! | gap | A place between fronts that is wide enough for a particle. |
+//! | hole | Of a sample: an empty disc on the surface. Of a mesh: a closed curve of open edges. |
 //! | natural neighbours, valence | The particles whose Voronoi cells share an edge in the tangent plane; their number, six in a hexagonal lattice. |
 //! | defect | A particle of a mesh whose valence is not six, or on the border not four. |
 //! | refinement | Ordering a coarse front as a mesh and halving its edges, level by level. |

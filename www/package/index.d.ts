@@ -75,13 +75,15 @@ export interface Options {
   adaptive?: boolean;
   /** how the radius follows from the curvature; default `chord_error` */
   law?: 'chord_error' | 'max_curvature' | 'sum_of_curvatures';
-  /** largest gap between the surface and a triangle of neighbours */
+  /** largest gap between the surface and a triangle of neighbours; default '0.0045%' */
   chordError?: Size;
-  /** radius of a particle divided by the radius of curvature under it, for the other two laws */
+  /** radius of a particle over the radius of curvature of the surface there, for the other two laws; default 0.015 */
   curvatureScale?: number;
+  /** radius of the smallest particles, at least; default '0.1%' */
   radiusMin?: Size;
+  /** radius of the largest particles, at most; default '3%' */
   radiusMax?: Size;
-  /** largest slope of the radius along the surface */
+  /** how fast the radius may change along the surface: a slope without unit, 0.01 to 0.5; default 0.2 */
   grading?: number;
   /** of a formula: whether the faces of the box close the surface, giving the solid f <= 0 in the box */
   closed?: boolean;
@@ -102,10 +104,11 @@ export interface Options {
   exactly?: boolean;
   /** relaxation steps after the front; default 10 */
   relax?: number;
-  /** a child joins an existing particle within this distance, divided by two radii, 0.5 to 0.9 */
+  /** distance, in units of two radii, within which a child is matched with a particle: 0.5 to 0.9; default 0.7 */
   matchTolerance?: number;
   /** whether gaps between fronts are filled with a particle; default `fill` */
   gaps?: 'fill' | 'leave';
+  /** a whole number that chooses the point where the front begins; default 0 */
   seed?: number;
   /** number of particles at which the run stops; default 4,400,000 */
   maxParticles?: number;

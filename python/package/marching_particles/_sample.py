@@ -70,9 +70,9 @@ _KEPT = (
 class Sample:
     """The particles of a run.
 
-    The arrays have a row for each particle. One on a sharp edge, or on a smooth join that prolongs one, has
-    a row on each side, with the normal of that side; :meth:`mesh` has it once. They are made when
-    first asked for, and kept.
+    The arrays have a row for each particle. A particle on a sharp edge, or on a smooth join that
+    continues one, has a row for each side, with the normal of that side; :meth:`mesh` has it once.
+    The arrays are made when they are first asked for, and kept.
 
     A sample is pickled with all its arrays, its mesh and its report. To :meth:`save` one that was
     unpickled, it is sampled anew, which takes a field that can be pickled: see :class:`Field`.
@@ -353,47 +353,51 @@ def sample(
         count: Number of particles, met to within 3 %; 1 to 4,000,000.
         spacing: Distance between neighbours, twice the radius: a length; a share of the diagonal of
             the box such as ``"1%"``; a formula of x, y, z and ``params`` such as
-            ``"0.02 + 0.1 hypot(x, y)"``; or a function of points, as for ``field``. It must be above 0 on the surface. Sizes change gradually along the surface;
-            a warning says where that is less than a formula or function asks. With ``count`` these
-            give the ratio of the distances, with ``adaptive`` the smaller size is taken.
+            ``"0.02 + 0.1 hypot(x, y)"``; or a function of points, as for ``field``. It must be
+            above 0 on the surface. Sizes change along the surface by ``grading`` at most; a warning
+            says where particles are closer than a formula or function asks for this reason. With
+            ``count`` a formula or function gives only the proportions, and with ``adaptive`` the
+            smaller size is taken.
         radius: Repulsion radius, half the distance between neighbours: a length, or a share of the
             diagonal of the box such as ``"1%"``. Without count, spacing and radius it is 0.6 %.
         bounds: The box, ``((x0, y0, z0), (x1, y1, z1))``. Without it a model has its own, and
-            another box is fitted to the surface; of functions and what is made of them only by
-            their signs on grids, so give it where it is known.
+            another box is fitted to the surface. For functions, and what is made of them, the fit
+            has only their signs on grids: give the box where you know it.
         params: Values of the parameters of a formula, by name; others are 1, or those of the
             surface of the gallery.
         gradient: A function of the points that returns the gradients of the function ``field``, (n,
             3). Without it they are found by differences, with several times as many calls.
         adaptive: Whether the radius follows the curvature. The size is then that of ``count``, or
             one that keeps close to the surface.
-        law: How the radius follows from the curvature: ``"chord_error"``, which is the usual one,
+        law: How the radius follows from the curvature: ``"chord_error"`` (default),
             ``"max_curvature"`` or ``"sum_of_curvatures"``.
         chord_error: Largest gap between the surface and a triangle of neighbours: a length, or a
-            share of the diagonal of the box such as ``"0.01%"``.
-        curvature_scale: Radius of a particle over the radius of curvature under it, for the other
-            two laws.
-        radius_min: Radius of the smallest particle, a length or a share.
-        radius_max: Radius of the largest particle, a length or a share.
-        grading: Slope of the radius along the surface.
+            share of the diagonal of the box; ``"0.0045%"`` by default.
+        curvature_scale: Radius of a particle over the radius of curvature of the surface there, for
+            the other two laws; 0.015 by default.
+        radius_min: Radius of the smallest particles, at least: a length, or a share of the diagonal
+            of the box; ``"0.1%"`` by default.
+        radius_max: Radius of the largest particles, at most, in the same way; ``"3%"`` by default.
+        grading: How fast the radius may change along the surface: a slope L, 0.01 to 0.5, 0.2 by
+            default. The radii of neighbours differ by a factor of at most (1 + L)/(1 - L).
         closed: Whether the faces of the box close what they cut: the solid f <= 0 in the box. For
             formulas.
         periodic: Whether opposite faces of the box of ``closed`` have the same particles.
-        thickness: Thickness of a shell around the surface that is sampled in its place: a number,
-            or a formula of x, y, z and the parameters. For formulas.
+        thickness: Thickness of a shell around the surface, which is sampled instead: a length, or a
+            formula of x, y, z and the parameters. For formulas.
         method: ``"front"``, or ``"refined"``: slower, with more particles that have six neighbours.
         pattern: ``"hexagonal"``, as fronts grow; ``"blue"``: blue noise, a Poisson-disk pattern
             without rows, no pair nearer than two radii and no hole wider; ``"random"``:
             independent points, even by area. The last two are not relaxed, and have exactly the
             wanted ``count``.
         exactly: Whether a front has exactly ``count`` particles, and not only to within 3 %.
-        relax: Steps of relaxation after the front; 10 without it.
-        match_tolerance: Distance over two radii within which a child joins a particle that is
-            there, 0.5 to 0.9.
-        gaps: ``"fill"``: where fronts meet, gaps that are wide enough get a particle; ``"leave"``:
-            they do not.
-        seed: Seed of the point where the front begins, 0 to 2**64 - 1.
-        max_particles: Number of particles at which the run stops; 4,400,000 without it.
+        relax: Number of relaxation steps after the front; 10 by default.
+        match_tolerance: Distance, in units of two radii, within which a child is matched with an
+            existing particle instead of being added: 0.5 to 0.9, 0.7 by default.
+        gaps: ``"fill"`` (default): where fronts meet, gaps that are wide enough get a particle;
+            ``"leave"``: they do not.
+        seed: A whole number, 0 to 2**64 - 1, that chooses the point where the front begins.
+        max_particles: Number of particles at which the run stops; 4,400,000 by default.
         values: More columns, by name: formulas of x, y, z, the normal n_x, n_y, n_z, the principal
             curvatures k_1 >= k_2, the direction d_x, d_y, d_z of k_1, radius, level, area (the
             share of the surface), edge (the distance to the nearest sharp edge or rim) and

@@ -27,7 +27,7 @@ export function createPaint(engine, brush) {
   );
   const text = () =>
     off()
-      ? 'Adaptive sizes follow the curvature, and what is painted rests. Uniform sizes can be painted.'
+      ? 'Painting has no effect on adaptive sizes, which follow the curvature. Choose Uniform to paint.'
       : 'Drag over the surface to make its particles finer or coarser there.';
   // While the brush is on, its card has this button, and the panel keeps its height.
   const isSeen = () => !brush.on.value && count.value > 0;
