@@ -151,12 +151,12 @@ export class Columns {
   /**
    * Returns the kind of curve on which the particle of a first row lies, preferring the crease; null if on none.
    * @param {number} i
-   * @returns {'crease' | 'seam' | null}
+   * @returns {'crease' | 'smooth join' | null}
    */
   curveAt(i) {
     if (i >= this.twins.length) return null;
     if (this.segments.includes(i)) return 'crease';
-    return this.seams.includes(i) ? 'seam' : null;
+    return this.seams.includes(i) ? 'smooth join' : null;
   }
 
   /** The kinds of curves from which the fronts start. */

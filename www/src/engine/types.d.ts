@@ -217,7 +217,7 @@ export interface Hover {
   /** null for a seed */
   parent: number | null;
   /** the kind of curve on which it lies */
-  curve: 'crease' | 'seam' | null;
+  curve: 'crease' | 'smooth join' | null;
   position: Vec3;
   normal: Vec3;
   radius: number;
@@ -414,7 +414,7 @@ export interface EngineCommands {
   /** what is wrong with the formula of a thickness or a spacing on the present surface; null if nothing is */
   textFault: (what: 'thickness' | 'spacing', text: string) => Promise<string | null>;
   /** the voxels of the image in a rectangle of so many pixels; NaN outside it, null without an image */
-  section: (sheet: { corner: Vec3; sides: [Vec3, Vec3]; size: [number, number] }) => Promise<Float32Array | null>;
+  section: (rectangle: { corner: Vec3; sides: [Vec3, Vec3]; size: [number, number] }) => Promise<Float32Array | null>;
   /** `enlarges`: nobody has set this box, so the camera fits it and the next formula ends it */
   setBounds: (bounds: Bounds | null, options?: { live?: boolean; enlarges?: boolean }) => void;
   /** whether the box was enlarged by a press, around an `endless` surface or another; reads the state */

@@ -43,7 +43,7 @@ describe('creases', () => {
     // A crease of one particle more, which a smooth join prolongs.
     columns.twins = Uint32Array.of(0, 0, 2, 2, 4, 4);
     columns.seams = Uint32Array.of(2, 4);
-    expect([0, 2, 4].map((i) => columns.curveAt(i))).toEqual(['crease', 'crease', 'seam']);
+    expect([0, 2, 4].map((i) => columns.curveAt(i))).toEqual(['crease', 'crease', 'smooth join']);
     expect(columns.curves).toEqual(['creases', 'smooth joins']);
     expect([...radiiOf(columns, 0, 6)]).toEqual([-1, 0, -2, 0, 3, 0]);
   });

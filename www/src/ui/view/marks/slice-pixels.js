@@ -94,7 +94,7 @@ export function squareTo(spots, size) {
 /**
  * Lays pixels over an image, brought to four spots and cut along a convex outline.
  * @param {Pick<ImageData, 'width' | 'height' | 'data'>} image
- * @param {{ pixels: Uint8ClampedArray, size: readonly [number, number] }} sheet
+ * @param {{ pixels: Uint8ClampedArray, size: readonly [number, number] }} rectangle
  * @param {(Point | null)[]} spots @param {readonly (Point | null)[]} outline
  */
 export function lay({ width, height, data }, { pixels, size }, spots, outline) {

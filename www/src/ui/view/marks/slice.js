@@ -19,15 +19,15 @@ const [LEAST, MOST, IN_A_VOXEL] = [32, 512, 2];
 /**
  * A rectangle in the plane: a corner, its sides as vectors, the points along them, and the outline of the section in it
  * as a path of CSS.
- * @typedef {{corner: Vec3, sides: [Vec3, Vec3], size: [number, number], outline: string}} Sheet
+ * @typedef {{corner: Vec3, sides: [Vec3, Vec3], size: [number, number], outline: string}} Rectangle
  */
 
 /**
  * The rectangle around the part of a plane in a box.
  * @param {Bounds} bounds @param {CuttingPlane} plane @param {number} step  between two points
- * @returns {Sheet | null}
+ * @returns {Rectangle | null}
  */
-function sheetOf(bounds, plane, step) {
+function rectangleOf(bounds, plane, step) {
   const section = sectionOf(bounds, plane);
   if (section.length === 0) return null;
   const { u, v } = planeOf(plane.normal);
@@ -47,7 +47,7 @@ function sheetOf(bounds, plane, step) {
   };
 }
 
-/** The corners of a rectangle, first along its first side. @param {Sheet} sheet */
+/** The corners of a rectangle, first along its first side. @param {Rectangle} rectangle */
 const cornersOf = ({ corner, sides }) =>
   [
     [0, 0],
@@ -64,11 +64,11 @@ export const sliceOver = (engine) => async (image, project) => {
   const [{ plane, bounds }, field, facts] = [engine.state.peek(), engine.field.peek(), engine.image.peek()];
   const box = bounds ?? field?.bounds;
   if (!plane || !box || !field?.image || !facts) return;
-  const sheet = sheetOf(box, plane, Math.min(...facts.spacing));
-  const values = sheet && (await engine.section(sheet));
-  if (!sheet || !values) return;
+  const rectangle = rectangleOf(box, plane, Math.min(...facts.spacing));
+  const values = rectangle && (await engine.section(rectangle));
+  if (!rectangle || !values) return;
   const pixels = pixelsOf(values, facts, field.image);
-  lay(image, { pixels, size: sheet.size }, cornersOf(sheet).map(project), sectionOf(box, plane).map(project));
+  lay(image, { pixels, size: rectangle.size }, cornersOf(rectangle).map(project), sectionOf(box, plane).map(project));
 };
 
 /** @param {Engine} engine @returns {Mark} */
@@ -80,21 +80,21 @@ export function sliceMark(engine) {
   let [shown, asked] = ['', ''];
   /** Counts the pictures on the canvas. */
   const revision = signal(0);
-  /** The rectangle that the canvas shows. @type {Sheet | null} */
+  /** The rectangle that the canvas shows. @type {Rectangle | null} */
   let drawn = null;
 
-  /** Asks for the voxels in a rectangle, one question at a time. @param {Sheet} sheet @param {string} wanted */
-  async function fill(sheet, wanted) {
+  /** Asks for the voxels in a rectangle, one question at a time. @param {Rectangle} rectangle @param {string} wanted */
+  async function fill(rectangle, wanted) {
     if (asked || wanted === shown || !context) return;
     asked = wanted;
-    const values = await engine.section(sheet);
+    const values = await engine.section(rectangle);
     asked = '';
     const [facts, info] = [engine.image.peek(), engine.field.peek()?.image];
     if (!values || !facts || !info) return;
     shown = wanted;
-    drawn = sheet;
-    [canvas.width, canvas.height] = sheet.size;
-    context.putImageData(new ImageData(pixelsOf(values, facts, info), sheet.size[0]), 0, 0);
+    drawn = rectangle;
+    [canvas.width, canvas.height] = rectangle.size;
+    context.putImageData(new ImageData(pixelsOf(values, facts, info), rectangle.size[0]), 0, 0);
     revision.value += 1;
   }
 
@@ -106,10 +106,10 @@ export function sliceMark(engine) {
       const info = engine.field.value?.image;
       canvas.style.visibility = 'hidden';
       if (!plane || !bounds || !facts || !info) return;
-      const sheet = sheetOf(bounds, plane, Math.min(...facts.spacing));
-      if (!sheet) return;
+      const rectangle = rectangleOf(bounds, plane, Math.min(...facts.spacing));
+      if (!rectangle) return;
       const { name, label, iso, is_dark_inside: isDark } = info;
-      void fill(sheet, JSON.stringify([sheet, name, label, iso, isDark]));
+      void fill(rectangle, JSON.stringify([rectangle, name, label, iso, isDark]));
       if (revision.value === 0 || !drawn) return;
       const spots = cornersOf(drawn).map((place) => engine.project(place));
       const matrix = squareTo(spots, drawn.size);
