@@ -4,8 +4,8 @@
 //! [`MeshField`] in one of three ways:
 //!
 //! * *Parts with edges*. The faces are divided into patches along edges whose faces meet at an
-//!   angle (`patches`). Each patch has a smooth function (`sheet`); f is their maximum at convex
-//!   edges and their minimum at concave ones (`parts`, `rule`).
+//!   angle (`patches`). Each patch has a smooth function (`patch_function`); f is their maximum at
+//!   convex edges and their minimum at concave ones (`parts`, `rule`).
 //! * *Scans and smooth shapes*. The signed distance from the mesh, computed on a grid, becomes an
 //!   image, and a spline through its voxels is f (`scan`).
 //! * *Bodies that may intersect or touch*. Each becomes a field in one of these two ways, and f is
@@ -18,12 +18,12 @@ mod cross;
 mod edges;
 mod mesh;
 mod parts;
+mod patch_function;
 mod patches;
 mod prepare;
 mod rim;
 mod rule;
 mod scan;
-mod sheet;
 mod tree;
 
 pub use compare::{MeshChange, MeshDistances};

@@ -2,9 +2,9 @@
 //! or the smaller of two.
 
 use super::MeshSolid;
+use super::patch_function::{PatchFunction, Slope};
 use super::patches::Patches;
 use super::rule::Rule;
-use super::sheet::{Sheet, Slope};
 use super::tree::Tree;
 use crate::field::{Evaluator, Facts, Field, Frame, Jet, Pieces, Piecewise, Within, edges};
 use crate::math::{Bounds, Sym3};
@@ -24,7 +24,7 @@ struct Shared {
     origin: DVec3,
     tree: Arc<Tree>,
     patches: Patches,
-    sheets: Vec<Sheet>,
+    functions: Vec<PatchFunction>,
     /// The creases as segments, and whether each is an edge of the surface.
     segments: Vec<[DVec3; 2]>,
     is_of_surface: Vec<bool>,
@@ -48,7 +48,7 @@ pub(super) struct PartsField {
 
 impl Debug for PartsField {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("PartsField").field("patches", &self.shared.sheets.len()).finish_non_exhaustive()
+        f.debug_struct("PartsField").field("patches", &self.shared.functions.len()).finish_non_exhaustive()
     }
 }
 
@@ -64,7 +64,7 @@ impl Shared {
         };
         let Some(found) = self.creases.nearest_of(q, near * near, is_own) else { return patch };
         let crease = creases[found.triangle as usize];
-        let mut value = |patch: u32| self.sheets[patch as usize].at(p).value;
+        let mut value = |patch: u32| self.functions[patch as usize].at(p).value;
         for (end, place) in crease.ends.into_iter().zip(self.segments[found.triangle as usize]) {
             let Ok(at) = corners.binary_search_by_key(&end, |corner| corner.vertex) else { continue };
             if q.distance_squared(place) <= corners[at].near * corners[at].near {
@@ -118,12 +118,20 @@ impl PartsField {
             faces[patch as usize].push(face);
         }
         let of_face = &patches.of_face;
-        let mut sheets = Vec::with_capacity(faces.len());
+        let mut functions = Vec::with_capacity(faces.len());
         for (patch, faces) in (0..).zip(&faces) {
             let is_inner =
                 |edge: usize| edges.sides(edge).iter().all(|side| of_face[side.face as usize] == patch);
             let is_flat = &patches.is_flat;
-            sheets.push(Sheet::new(mesh, edges, faces, is_inner, is_flat, diagonal, FLAT * diagonal));
+            functions.push(PatchFunction::new(
+                mesh,
+                edges,
+                faces,
+                is_inner,
+                is_flat,
+                diagonal,
+                FLAT * diagonal,
+            ));
             pause().await;
         }
         let place = |vertex: u32| mesh.vertices()[vertex as usize];
@@ -138,9 +146,9 @@ impl PartsField {
             faces: walls,
             creases: Tree::new(&corners),
             bounds,
-            bulge: sheets.iter().map(Sheet::bulge).fold(0.0, f64::max),
+            bulge: functions.iter().map(PatchFunction::bulge).fold(0.0, f64::max),
             patches,
-            sheets,
+            functions,
         };
         Self { shared: Arc::new(shared), is_continued: false, is_negative: false, shift: 0.0 }
     }
@@ -172,7 +180,7 @@ impl PartsField {
             return Slope { value: f64::NAN, gradient: DVec3::NAN, hessian: Sym3::splat(f64::NAN) };
         }
         let label = label.unwrap_or_else(|| self.label(p));
-        let own = self.shared.sheets[label as usize].at(p);
+        let own = self.shared.functions[label as usize].at(p);
         let sign = if self.is_negative { -1.0 } else { 1.0 };
         Slope {
             value: sign * own.value - self.shift,

@@ -32,7 +32,7 @@ pub(super) const SKIRT: f64 = 0.125;
 const ROUND: f64 = 0.7;
 
 /// The function of a patch.
-pub(super) enum Sheet {
+pub(super) enum PatchFunction {
     /// A plane: its unit normal and a point.
     Plane { normal: DVec3, point: DVec3 },
     /// A mean of quadratic functions.
@@ -58,7 +58,7 @@ pub(super) struct Slope {
 /// A triangle and the normals at its corners.
 type Element = ([DVec3; 3], [DVec3; 3]);
 
-impl Sheet {
+impl PatchFunction {
     /// The function of these faces of a mesh with this diagonal. `is_inner` tells whether the patch
     /// continues beyond an edge, and `is_flat` which faces are not facets of a curve; `flat` is the
     /// largest distance of a vertex from a plane.
@@ -153,7 +153,7 @@ fn sum_of(a: &Sym3<f64>, b: &Sym3<f64>, weight: f64) -> Sym3<f64> {
 }
 
 /// The plane of the faces, if they lie in one.
-fn plane_of(corners: &[[DVec3; 3]], area: DVec3, flat: f64) -> Option<Sheet> {
+fn plane_of(corners: &[[DVec3; 3]], area: DVec3, flat: f64) -> Option<PatchFunction> {
     let normal = area.try_normalize()?;
     let all = corners.as_flattened();
     let point = corners[0][0];
@@ -162,7 +162,7 @@ fn plane_of(corners: &[[DVec3; 3]], area: DVec3, flat: f64) -> Option<Sheet> {
     let is_near = |p: &DVec3| (normal.dot(*p - point) - mean).abs() <= flat;
     let is_along = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).dot(normal) > 0.0;
     let is_plane = all.iter().all(is_near) && corners.iter().all(is_along);
-    is_plane.then_some(Sheet::Plane { normal, point: point + mean * normal })
+    is_plane.then_some(PatchFunction::Plane { normal, point: point + mean * normal })
 }
 
 /// The normals of a patch at its vertices: means of the face normals there, with weights that are

@@ -1,20 +1,20 @@
 //! Open surfaces: walls below the border of a mesh, at which its surface ends.
 //!
 //! A *wall* stands on each edge of the border, across the surface, and reaches down from it. The
-//! sheet and its walls are a part with edges like any other, and inside is below the sheet and
-//! within the walls; but the walls only limit the surface. Their creases with the sheet are its
+//! faces and the walls are a part with edges like any other, and inside is below the faces and
+//! within the walls; but the walls only limit the surface. Their creases with the faces are its
 //! rim.
 
 use super::edges::{Edges, Side, ends_of};
-use super::sheet::{SKIRT, free_length};
+use super::patch_function::{SKIRT, free_length};
 use super::tree::Tree;
 use super::{MeshError, MeshSolid, TriangleMesh};
 use crate::math::Forest;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Depth of a wall divided by the radius of the largest ball that touches the sheet from below and
-/// holds none of it: the wall stays nearer to its edge than to other parts of the sheet.
+/// Depth of a wall divided by the radius of the largest ball that touches the surface from below
+/// and holds none of it: the wall stays nearer to its edge than to other parts of the surface.
 const DEPTH: f64 = 0.5;
 /// A border with a larger share of turns zigzags, as that of a cut scan does, and is smoothed.
 const TURNS: f64 = 0.25;
@@ -28,11 +28,11 @@ const ROUNDS: usize = 10;
 /// curves do not shrink (G. Taubin, "A Signal Processing Approach to Fair Surface Design", 1995).
 const STEPS: [f64; 2] = [0.5, -0.53];
 
-/// A sheet with its walls.
+/// An open surface with its walls.
 pub(super) struct Walled {
-    /// The faces of the sheet, then two for each edge of the border.
+    /// The faces of the surface, then two for each edge of the border.
     pub(super) solid: MeshSolid,
-    /// Number of faces of the sheet.
+    /// Number of faces of the surface.
     pub(super) faces: usize,
     /// Whether the border zigzagged and was smoothed.
     pub(super) is_smoothed: bool,
@@ -137,7 +137,7 @@ fn trim(faces: &mut Vec<[u32; 3]>) {
 }
 
 impl MeshSolid {
-    /// This sheet with walls below its border.
+    /// This open surface with walls below its border.
     pub(super) fn walled(&self) -> Result<Walled, MeshError> {
         if self.fans > 0 {
             return Err(MeshError::Fans { count: self.fans });
