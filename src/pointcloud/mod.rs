@@ -31,9 +31,9 @@ use crate::slices;
 use glam::DVec3;
 use job::Job;
 
-/// Fits a surface to the points of a file: PLY, OBJ, STL, OFF, GLB, 3MF, PCD, or text with one point
-/// on a line (XYZ, PTS, CSV). The content decides; if it is ambiguous, the extension of `name`. A
-/// function with this number of `centres`, one of [`CENTRES`], is fitted to all points;
+/// Fits a surface to the points of a file: PLY, OBJ, STL, OFF, GLB, 3MF, PCD, or text with one
+/// point on a line (XYZ, PTS, CSV). The content decides; if it is ambiguous, the extension of
+/// `name`. A function with this number of `centres`, one of [`CENTRES`], is fitted to all points;
 /// cross-validation decides how much noise is smoothed. Normals come from the file, else from its
 /// faces, else they are estimated. Large faces get more points, so that the surface follows them.
 /// 3MF needs the feature `images`.

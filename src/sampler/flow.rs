@@ -117,7 +117,8 @@ pub enum FollowError {
     /// Blue noise or random points, whose pattern would be lost.
     #[error("a pattern of random points cannot follow a moving surface: start a run on the new one")]
     Pattern,
-    /// The old or the new surface has creases or smooth joins, or the new one may have some in the box.
+    /// The old or the new surface has creases or smooth joins, or the new one may have some in the
+    /// box.
     #[error(
         "the surface has creases, smooth joins or tips in the box, on which particles cannot follow: start a run on the new one"
     )]

@@ -148,7 +148,8 @@ fn creases_are_counted_without_the_smooth_joins_that_prolong_them() {
     assert_eq!(half_edged, [Some(1), Some(2), Some(1)]);
     for number in [3_000, 8_000] {
         // The edge before the fillet begins, which ends there, and the rim of the solid, closed at
-        // the other end of that edge. The smooth joins on both sides of the fillet meet where it begins.
+        // the other end of that edge. The smooth joins on both sides of the fillet meet where it
+        // begins.
         let found = count("max(smin(z, x, max(0, -y)), hypot(x, y, z) - 1)", number, None);
         assert_eq!(found, [Some(2), Some(2), Some(1)], "{number}");
         // Two edges that meet where both fade out, and the rim, of which they are chords.
