@@ -501,7 +501,7 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
         ),
         (
             b"\x93NUMPY\x01\x00",
-            "save one of points as text, a row a line, as XYZ; the command line reads a volume (--image)",
+            "save points as text, one on a line (XYZ); the command line reads an array of voxels (--image)",
         ),
         (b"{\"asset\":{\"version\":\"2.0\"}}", "this is JSON (glTF is such)"),
         (b"\xff\xfe1\x00 \x00", "this is text in UTF-16"),

@@ -99,7 +99,7 @@ const KNOWN: [(&[u8], &str, &str); 16] = [
     (
         b"\x93NUMPY",
         "a NumPy array",
-        "save one of points as text, a row a line, as XYZ; the command line reads a volume (--image)",
+        "save points as text, one on a line (XYZ); the command line reads an array of voxels (--image)",
     ),
     (b"PK\x03\x04", "a ZIP archive (3MF and USDZ are such)", "unpack it, or export it as PLY"),
     (b"\x1f\x8b", "a gzip archive", "unpack it first"),
