@@ -30,7 +30,7 @@ function freeRoom(top, taken) {
 }
 
 /**
- * Shows the picture of a figure away from the changing number and from questions, unless all of it is already in view.
+ * Shows the picture of a figure away from the changing number, its paragraph and questions, unless it is all in view.
  * It stays until the number is released, the page is scrolled, or Escape is pressed.
  * @param {HTMLElement} number  the number that changes
  * @param {HTMLElement} stage  holds the figure
@@ -42,7 +42,7 @@ export function pin(number, stage, isDragged) {
   if (!stage.classList.contains('pinned')) {
     if (!shown || (shown.top >= top && shown.bottom <= innerHeight)) return;
     unpin();
-    const [above, below] = freeRoom(top, [number, ...queryAll(document, '.predict')]);
+    const [above, below] = freeRoom(top, [number.closest('p') ?? number, ...queryAll(document, '.predict')]);
     const height = Math.min(shown.height, below - above - 2 * MARGIN_PX);
     if (height < LEAST_PX) return;
     const values = {
