@@ -21,6 +21,7 @@ const GONE = {
   'predict-last': 'judge',
   'predict-few': 'judge',
   'predict-chance': 'judge',
+  'predict-hole': 'predict-seam',
 };
 
 /** @typedef {{ stop: string, parts: Record<string, string> }} Address */

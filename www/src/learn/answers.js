@@ -16,9 +16,6 @@ export class Stops {
   /** @type {Map<string, Signal<boolean>>} */
   #open = new Map();
 
-  /** @type {Map<string, Signal<number | null>>} */
-  #picks = new Map();
-
   /** Other stored values: guesses before their answers, and the decided slots. */
   #more;
   #keep;
@@ -98,28 +95,9 @@ export class Stops {
     this.state(stop).value = true;
   }
 
-  /** @param {string} stop */
-  pickOf(stop) {
-    const known = this.#picks.get(stop) ?? signal(/** @type {number | null} */ (null));
-    this.#picks.set(stop, known);
-    return known;
-  }
-
   /** Whether a prediction was made. An effect that calls this runs again when it is. @param {string} stop */
   isOpen(stop) {
     return this.state(stop).value;
-  }
-
-  /** The particle that was pressed, or null. @param {string} stop */
-  picked(stop) {
-    return this.pickOf(stop).value;
-  }
-
-  /** @param {string} stop @param {number} particle */
-  pick(stop, particle) {
-    if (this.state(stop).peek()) return;
-    this.pickOf(stop).value = particle;
-    this.keepMore(stop, particle);
   }
 }
 

@@ -10,7 +10,6 @@ import { partsOf, stopOf } from './questions.js';
 import { HEAD_PX } from './stops.js';
 
 /**
- * @import { Signal } from '../engine/types.js'
  * @import { Lab, Part, Question, Stops } from './types.js'
  */
 
@@ -86,7 +85,7 @@ export function mountQuestion(host, id, about, { lab, stops }) {
   async function asked(guesses) {
     const facts = await ask(await lab);
     const right = parts.map(({ part }) => part.right(facts));
-    const said = words(facts, guesses[0]).filter(Boolean).join(' ');
+    const said = words(facts).filter(Boolean).join(' ');
     for (const [k, { stop, asked: question }] of parts.entries())
       stops.record({ stop, question, guess: guesses[k], right: right[k], answer: said });
     write(right, said);
@@ -137,7 +136,7 @@ const enter = (id, about, stops) =>
   partsOf(about).map((part) => {
     const stop = stopOf(id, part);
     const asked = part.legend ? `${about.question} ${part.legend}` : about.question;
-    const input = inputOf(part, about.question, stops.pickOf(stop));
+    const input = inputOf(part, about.question);
     stops.entries.set(stop, { question: asked, get: input.get });
     return { part, stop, asked, input, isFirst: about.rounds[0].includes(part) };
   });
@@ -153,7 +152,6 @@ function judge({ kind, choices = [] }, guess, right) {
     return guess === right
       ? 'As you said.'
       : `You said: ${choices.find(({ value }) => value === guess)?.label ?? guess}.`;
-  if (kind === 'pick') return guess === right ? 'Exactly there.' : '';
   if (guess === right) return 'Exactly.';
   const far = Math.abs(Number(guess) - Number(right));
   return far <= CLOSE * Number(right) ? 'Close.' : `You said ${formatCount(guess)}.`;
@@ -180,20 +178,9 @@ function showFigure(host) {
 
 /**
  * The input of a part. `lock` ends the input and shows the right answer, unless it is null.
- * @param {Part<any>} part @param {string} question @param {Signal<number | null>} picked
+ * @param {Part<any>} part @param {string} question
  */
-function inputOf({ kind, legend, choices = [], label = 'Your guess', most = 9999 }, question, picked) {
-  if (kind === 'pick')
-    return {
-      element: null,
-      missing: 'Press a bare place on the surface first.',
-      get: () => picked.peek(),
-      set(/** @type {unknown} */ guess) {
-        if (typeof guess === 'number') picked.value = guess;
-      },
-      nameOf: () => '',
-      lock(/** @type {string | number | null} */ _right) {},
-    };
+function inputOf({ kind, legend, choices = [], label = 'Your guess', most = 9999 }, question) {
   if (kind === 'number') {
     const id = uniqueId('guess');
     const box = h('input', { class: 'box', id, type: 'number', inputmode: 'numeric', min: 0, max: most, step: 1 });

@@ -134,7 +134,7 @@ function guessWords(guessed) {
 }
 
 /** Whether a question has a single right answer, the same for all learners. @param {Guessed} guessed */
-const hasBars = ({ stop }) => choicesOf(stop).length > 0 || (Object.hasOwn(QUESTIONS, stop) && stop !== 'predict-hole');
+const hasBars = ({ stop }) => choicesOf(stop).length > 0 || Object.hasOwn(QUESTIONS, stop);
 
 /**
  * How often each answer to a question was guessed, as bars, with the right one marked.

@@ -58,7 +58,7 @@ export const KNOBS = [
     set: (tolerance) => ({ match_tolerance: Number(tolerance) }),
     why: (part) =>
       Number(part) < 0.7
-        ? 'Where rows meet, a particle that is off by more than this does not count as the child. A second one is put beside it, and the particles crowd.'
+        ? 'Where rows meet, a particle that is off by more than this does not count as the child. A second one is put beside it, and the particles crowd. The ideal for so many is finer, so that a hole of the same width counts as larger.'
         : 'A child counts as matched by a particle far from its place. Nothing is put there, and the hole stays open.',
   },
   {

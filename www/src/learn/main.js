@@ -1,7 +1,7 @@
 /** Entry point of the lesson's page: an article whose figures, questions and comparisons run the paper's algorithms. */
 import '../ui/trusted.js';
 import { button } from '../ui/button.js';
-import { byId, fill, h, queryAll } from '../ui/dom.js';
+import { byId, fill, h, live, queryAll } from '../ui/dom.js';
 import { storeSite } from '../ui/offline.js';
 import { kept } from '../ui/remembered.js';
 import { packed, surfaceWords } from '../ui/surface-link.js';
@@ -37,6 +37,11 @@ const context = { lab, stops, series: parts.task ?? stops.series() };
 for (const host of queryAll(document, '[data-figure]'))
   mountFigure(host, () => FIGURES[host.dataset.figure ?? ''](context));
 for (const host of queryAll(document, '.predict')) mountQuestion(host, host.id, QUESTIONS[host.id], context);
+// What would give an answer away follows it.
+for (const words of queryAll(document, '[data-after]'))
+  live(words, () => {
+    words.hidden = !stops.isOpen(words.dataset.after ?? '');
+  });
 mountTerms();
 const bench = lab.then(async (ready) => {
   const { createBench } = await import('./bench.js');

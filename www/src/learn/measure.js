@@ -4,7 +4,7 @@ import { momentAt } from '../figures/moment.js';
 import { openParticle } from '../figures/particle.js';
 import { between, createGrid } from '../ui/neighbours.js';
 import { NoSurface } from './lab.js';
-import { placesOf, scoreOf } from './score.js';
+import { scoreOf } from './score.js';
 
 /**
  * @import { LessonParticles } from '../engine/types.js'
@@ -117,17 +117,29 @@ export function asFineEverywhere(radii) {
 }
 
 /**
- * Whether a pressed point is bare, given the particle that will lie there: the front has not reached it.
- * @param {number} count  so many particles have been placed @param {number} particle
+ * For each ring, the particles that the front met out of step when it placed the ring; for the last, also those met
+ * when nothing was left to place.
+ * @param {LabRun} run
  */
-export const isBare = (count, particle) => particle >= count;
+export async function meetingsOf({ client, chapters }) {
+  /** @type {number[][]} */
+  const found = [[]];
+  // The particles of a level place the next ring.
+  for (const { first_event: first, events: count } of chapters.filter(({ kind }) => kind === 'level')) {
+    const events = await client.ask('events', { first, count });
+    found.push(events.flatMap((event) => (event.type === 'fronts_meet' ? [event.particle] : [])));
+  }
+  return [...found.slice(0, -2), found.slice(-2).flat()];
+}
 
-/** The widest hole that the fronts leave, and the particle next to it; null if none is measured. @param {Lab} lab */
-export async function widestHole(lab) {
+/**
+ * The sizes of the rings, and the ring on which the front first meets itself out of step; 0 if it never does.
+ * @param {Lab} lab
+ */
+export async function firstSeamOf(lab) {
   const run = await lab.run({}, { keep: true });
-  const { places } = await lab.measure(run.placed, false);
-  const { hole, beside } = placesOf(run.placed, places);
-  return hole && { hole, particle: beside, radius: run.radius, run };
+  const first = (await meetingsOf(run)).findIndex(({ length }) => length > 0);
+  return { rings: ringsOf(run.placed), first: Math.max(0, first) };
 }
 
 /**

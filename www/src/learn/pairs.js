@@ -217,7 +217,6 @@ export async function drawn(lab, surfaces, series, number) {
  * @param {Awaited<ReturnType<typeof drawn>>} of @returns {Question<readonly Score[]>}
  */
 export function questionOf({ pair, purpose: { key, story, why } }) {
-  const isOfSizes = pair.sides.some(({ isAdaptive }) => isAdaptive);
   const right = (/** @type {readonly Score[]} */ scores) => winnerOf(scores, key);
   const { name, writeChance, write } = rowOf(key);
   return {
@@ -233,7 +232,6 @@ export function questionOf({ pair, purpose: { key, story, why } }) {
     words: (scores) => [
       `This is the surface ${pair.name}. ${why} ${name}: ${written(key, scores[0])} in A, ${written(key, scores[1])} in B.`,
       `Up to ${(writeChance ?? write)(Number(chanceOf(rowOf(key), scores)))} of a difference may be chance.`,
-      ...(isOfSizes ? ['Both are compared with the ideal of one size.'] : []),
     ],
   };
 }

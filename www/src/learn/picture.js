@@ -155,9 +155,9 @@ export class Picture {
 
   /**
    * @param {Orbit} orbit
-   * @param {{ name: string, onPick?: (particle: number) => void }} about  `name`: of the picture, for screen readers
+   * @param {{ name: string }} about  `name`: of the picture, for screen readers
    */
-  constructor(orbit, { name, onPick }) {
+  constructor(orbit, { name }) {
     this.orbit = orbit;
     this.#name = name;
     this.#onPick = null;
@@ -167,7 +167,7 @@ export class Picture {
     this.ringed = signal(null);
     this.#canvas = h('canvas', { class: 'picture-canvas' });
     this.element = h('div', { class: 'picture', role: 'application', tabindex: 0 }, this.#canvas);
-    this.pickWith(onPick ?? null);
+    this.pickWith(null);
     const context = this.#canvas.getContext('2d');
     this.painter = context ? new Painter(this.#canvas, context) : null;
     this.#size = signal({ width: 0, height: 0 });
@@ -285,10 +285,6 @@ export class Picture {
       if (kind === 'ring') {
         context.arc(x, y, r, 0, 2 * Math.PI);
         rings += 1;
-      } else if (kind === 'dot') {
-        context.arc(x, y, r / 2, 0, 2 * Math.PI);
-        context.fillStyle = context.strokeStyle;
-        context.fill();
       } else {
         context.moveTo(x - r, y);
         context.lineTo(x + r, y);
@@ -304,7 +300,7 @@ export class Picture {
   #pick(xPx, yPx) {
     const scene = this.scene.peek();
     if (!scene) return null;
-    const { positions, normals, radii } = scene.places ?? scene.particles;
+    const { positions, normals, radii } = scene.particles;
     const view = this.#view();
     let best = null;
     let least = Infinity;

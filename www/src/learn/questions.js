@@ -2,23 +2,31 @@
  * The questions of the lesson as data: the question, the measurement for the answer, the right answer, and the words
  * about it. `ask.js` uses them.
  */
-import { distance, triple } from '../engine/vector.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
 import { childrenOf } from './decisions.js';
-import { asFineEverywhere, costOf, openBend, RING, ringsOf, scoresOfRest, widestHole } from './measure.js';
+import { asFineEverywhere, costOf, firstSeamOf, openBend, RING, ringsOf, scoresOfRest } from './measure.js';
 import { FIGURES, OPENING, PLAIN_SIDES, SIDES, scoresOf, winnerOf } from './pairs.js';
 import { verdictOf, written } from './score.js';
 
 /** @import { Part, Question, Score } from './types.js' */
 
-/** Amounts that differ by less than this factor are called alike. */
-const ALIKE = 1.25;
 /** Distances below this share of 2r are called nearer. */
 const NEARER = 0.999;
 /** Lower ends of the answers to the question about sizes; below the first, all sizes are called alike. */
 const FACTORS = [1.05, 1.3, 2, 4];
+
+/**
+ * The rings that the question about seams offers; −1 for none.
+ * @type {Record<string, (rings: readonly number[]) => number>}
+ */
+const OFFERED = {
+  six: (rings) => rings.findIndex((count, k) => k > 0 && count !== 6 * k),
+  first: () => 1,
+  longest: (rings) => rings.indexOf(Math.max(...rings)),
+  last: ({ length }) => length - 1,
+};
 
 /** @param {Record<string, string>} labels  by their values */
 const choices = (labels) => Object.entries(labels).map(([value, label]) => ({ value, label }));
@@ -75,20 +83,29 @@ export const QUESTIONS = {
           : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars below the picture run ahead of 6k.',
     ],
   }),
-  'predict-hole': one({
-    question:
-      'A quarter of the particles are there. Where will the largest hole open? Turn the picture and press a bare place.',
-    kind: 'pick',
-    ask: widestHole,
-    right: (widest) => widest?.particle ?? -1,
-    words(widest, guess) {
-      if (!widest) return ['On this surface the rings leave no hole wide enough to count.'];
-      const { placed } = widest.run;
-      const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
-      const words = `The largest hole is in the ring of the picture, beside a particle of level ${placed.levels[widest.particle]} of ${last}: on a seam, where parts of the front have met and left less room than a particle needs.`;
-      if (typeof guess !== 'number') return [words];
-      const far = distance(triple(placed.positions, guess), widest.hole.places[0]) / (2 * widest.radius);
-      return [words, `You pressed ${formatFixed(far, 1)} widths of a disc away from it.`];
+  'predict-seam': one({
+    question: 'On which ring does the front first meet itself out of step, so that seams begin?',
+    kind: 'choice',
+    choices: choices({
+      first: 'On the first, around the seed',
+      six: 'On the first that does not have six more than the one before',
+      longest: 'On the longest, after which the rings shrink',
+      last: 'On the last, where the front closes',
+    }),
+    ask: firstSeamOf,
+    right({ rings, first }) {
+      const far = (/** @type {string} */ name) => Math.abs(OFFERED[name](rings) - first);
+      return first === 0 ? 'none' : Object.keys(OFFERED).reduce((best, one) => (far(one) < far(best) ? one : best));
+    },
+    words({ rings, first }) {
+      if (first === 0) return ['On this surface the front never meets itself out of step.'];
+      const off = OFFERED.six(rings);
+      const words = `The front first meets itself out of step on ring ${first} of ${rings.length - 1}, at the crosses of the picture.`;
+      if (Math.abs(off - first) > 1) return [words];
+      return [
+        words,
+        `Up to ring ${off - 1} each has six more than the one before, as in a plane: whichever way a row has come, it fits. Ring ${off} has ${rings[off]} particles instead of ${6 * off}, since the surface bends: neighbours no longer agree on the place of the child between them.`,
+      ];
     },
   }),
   'predict-rest': one({
@@ -159,28 +176,15 @@ export const QUESTIONS = {
           ],
   }),
   'predict-cost': one({
-    question:
-      'What takes more evaluations of f on this surface: placing all particles, or the ten steps of relaxation after that?',
-    kind: 'choice',
-    choices: choices({
-      placing: 'Placing all particles',
-      alike: 'Both about the same',
-      resting: 'The ten steps of relaxation',
-    }),
+    question: 'How many pushes does a particle get in the ten steps of relaxation, on average?',
+    kind: 'number',
+    label: 'Pushes for each particle',
     ask: costOf,
-    right({ rows }) {
-      const [placing, resting] = rows.map(({ evaluations }) => evaluations);
-      return placing > ALIKE * resting ? 'placing' : resting > ALIKE * placing ? 'resting' : 'alike';
-    },
-    words({ rows }) {
-      const [one, ten, pushes] = [rows[0].evaluations, rows[1].evaluations, rows[1].pushes].map((count) =>
-        formatSignificant(count, 3),
-      );
-      return [
-        `Placing took ${one} evaluations of f for each particle, the ten steps ${ten}.`,
-        `In seconds the steps cost far more: besides asking f they sum pushes, ${pushes} for each particle here.`,
-      ];
-    },
+    right: ({ rows }) => Math.round(rows[1].pushes),
+    words: ({ rows }) => [
+      `In each step that is ${formatFixed(rows[1].pushes / 10, 1)}: from its six neighbours at 2r, and now and then from one of the next, which are at 3.5r in a regular pattern but come nearer along seams.`,
+      `Summing them is why the steps take longer than placing. They ask f ${formatSignificant(rows[1].evaluations, 3)} times for each particle, placing ${formatSignificant(rows[0].evaluations, 3)} times.`,
+    ],
   }),
 };
 

@@ -39,14 +39,13 @@ export interface WhatIf {
 }
 export type Choices = readonly { value: string; label: string }[];
 /**
- * What a question asks for. `choice`: one of several; `number`: a count; `pick`: a particle pressed
- * in the figure
- * before it. `F`: what is measured for the answer.
+ * What a question asks for. `choice`: one of several; `number`: a count. `F`: what is measured for the
+ * answer.
  */
 export interface Part<F> {
   /** empty where a question has one part */
   name: string;
-  kind: 'choice' | 'number' | 'pick';
+  kind: 'choice' | 'number';
   /** above the part, where there are several */
   legend?: string;
   choices?: Choices;
@@ -62,8 +61,8 @@ export interface Question<F> {
   rounds: readonly (readonly Part<F>[])[];
   /** measures what the answer needs */
   ask: (lab: Lab) => Promise<F>;
-  /** what the answer says; `guess`: of the first part */
-  words: (facts: F, guess: string | number | null) => string[];
+  /** what the answer says */
+  words: (facts: F) => string[];
 }
 /** A sampling of a pair that is judged, with the name that it has once it was. */
 export type JudgedSide = { name: string; settings: Partial<LessonSettings>; isAdaptive?: boolean };
@@ -124,7 +123,7 @@ export interface Mark {
   radius: number;
   /** the ring is the empty circle of a hole itself */
   isHole?: boolean;
-  kind: 'ring' | 'cross' | 'dot' | 'arrow';
+  kind: 'ring' | 'cross' | 'arrow';
 }
 /** What a run costs: for each particle, and in rounds. `others`: particles of the other method. */
 export interface Cost {
@@ -140,8 +139,6 @@ export interface Scene {
   particles: LessonParticles;
   /** those that the surface to come is made of; else the particles that are not drawn */
   body?: LessonParticles;
-  /** those of which a press chooses one, if not the ones that are drawn */
-  places?: LessonParticles;
   count?: number;
   /** nothing of its inside can be seen: see {@link isClosed} */
   isClosed?: boolean;

@@ -5,7 +5,7 @@ import { byId, fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatSignificant, plural } from '../../ui/format.js';
 import { offerNumber } from '../drag.js';
 import { createMarkKey } from '../marks.js';
-import { isBare, isClosed } from '../measure.js';
+import { isClosed, meetingsOf } from '../measure.js';
 import { createPlay, createRangeRow } from '../parts.js';
 import { byNeighbours, byValue, Orbit, Picture, rangeOf } from '../picture.js';
 import { scoreOf, written } from '../score.js';
@@ -13,32 +13,17 @@ import { termShown } from '../terms.js';
 
 /**
  * @import { LessonParticles, Signal } from '../../engine/types.js'
- * @import { Context, Lab, LabRun, Mark, Score } from '../types.js'
+ * @import { Context, Lab, Mark, Score } from '../types.js'
  */
 
 /** Time between two positions of the slider. */
 const STEP_MS = 400;
-/** The share of particles placed when the widest hole is asked for. */
+/** The share of particles placed when the question about seams is asked. */
 const QUARTER = 0.25;
 /** Arrows are this many times as long as the moves; moves shorter than this, in r, get none. */
 const [LONGER, SHORTEST] = [6, 0.03];
 /** Size of a cross relative to other marks, which are wider than a disc. */
 const CROSS = 0.5;
-
-/**
- * For each level, the particles whose front met itself or another one out of step.
- * @param {LabRun} run
- */
-async function meetingsOf({ client, chapters }) {
-  const levels = chapters.filter(({ kind }) => kind === 'level');
-  /** @type {number[][]} */
-  const found = [];
-  for (const { first_event: first, events: count } of levels) {
-    const events = await client.ask('events', { first, count });
-    found.push(events.flatMap((event) => (event.type === 'fronts_meet' ? [event.particle] : [])));
-  }
-  return { levels, found };
-}
 
 /**
  * Arrows from particles to their next positions.
@@ -58,26 +43,28 @@ function arrowsOf(now, next) {
 }
 
 /**
- * The states that the slider shows: the levels of the front, then each step of the relaxation.
+ * The states that the slider shows: the rings of the front, then each step of the relaxation.
  * @param {Lab} own
  */
 async function courseOf(own) {
   const run = await own.run({}, { keep: true });
   const { placed } = run;
-  const { levels, found } = await meetingsOf(run);
+  const met = await meetingsOf(run);
+  /** The numbers of particles up to each ring; the particles of a level place the next ring. */
+  const ends = [1, ...run.chapters.filter(({ kind }) => kind === 'level').map(({ after }) => after)];
   const steps = run.chapters.filter(({ kind }) => kind === 'relaxation');
   const states = [placed];
   for (const { first_event: first, events } of steps.slice(0, -1))
     states.push(await run.client.ask('seek', { event: first + events }));
   states.push(run.end);
-  const front = levels.length - 1;
-  const quarter = levels.findIndex(({ after }) => after >= QUARTER * placed.radii.length);
+  const front = met.length - 1;
+  const quarter = ends.findIndex((end) => end >= QUARTER * placed.radii.length);
   return {
-    ...{ run, placed, levels, found, steps, states, front, quarter: Math.max(0, quarter), last: front + steps.length },
+    ...{ run, placed, met, steps, states, front, quarter: Math.max(0, quarter), last: front + steps.length },
     // The body comes from another run, so that it does not show where this one leaves a hole.
     body: (await own.run({ seed: 1, relax_steps: 0 })).placed,
     /** The particles at a position of the slider. @param {number} place */
-    at: (place) => (place < front ? rangeOf(placed, 0, levels[place].after) : states[Math.max(0, place - front)]),
+    at: (place) => (place < front ? rangeOf(placed, 0, ends[place]) : states[Math.max(0, place - front)]),
   };
 }
 
@@ -87,22 +74,14 @@ async function courseOf(own) {
 export async function seams({ lab, stops }) {
   const own = await lab;
   const course = await courseOf(own);
-  const { placed, front, quarter, last } = course;
+  const { placed, met, front, quarter, last } = course;
   const orbit = new Orbit();
   orbit.fitTo(placed);
   orbit.faceFront(placed);
   const picture = new Picture(orbit, {
     name: 'The front and its relaxation, with particles of five and of seven neighbours marked',
-    onPick(particle) {
-      if (isFree()) return;
-      // Where the front has been, no hole is left.
-      isCovered.value = !isBare(course.at(range.get()).radii.length, particle);
-      if (!isCovered.peek()) stops.pick('predict-hole', particle);
-    },
   });
-  /** Whether the last press was on the front. */
-  const isCovered = signal(false);
-  const isFree = () => stops.isOpen('predict-hole');
+  const isFree = () => stops.isOpen('predict-seam');
   const isRelaxing = () => isFree() && stops.isOpen('predict-rest');
   /** Every answer lets the slider go further. */
   const limit = () => (isRelaxing() ? last : isFree() ? front : quarter);
@@ -112,7 +91,7 @@ export async function seams({ lab, stops }) {
     value: quarter,
     say: (place) =>
       place <= front
-        ? `level ${formatCount(place)} of ${formatCount(front)}`
+        ? `ring ${formatCount(place)} of ${formatCount(front)}`
         : `step ${formatCount(place - front)} of ${formatCount(last - front)}`,
     change() {},
   });
@@ -127,12 +106,11 @@ export async function seams({ lab, stops }) {
   measure().catch(() => {});
   live(picture.element, () => {
     const place = Math.min(range.place.value, limit());
-    const picked = place <= front ? stops.picked('predict-hole') : null;
-    const marks = marksAt(course, place, { picked, isFree: isFree(), isRelaxing: isRelaxing() });
+    const marks = marksAt(course, place, { isFree: isFree(), isRelaxing: isRelaxing() });
     // A seam is where fronts have met so far.
-    if (termShown() === 'seam')
+    if (isFree() && termShown() === 'seam')
       marks.push(
-        ...course.found
+        ...met
           .slice(0, place + 1)
           .flat()
           .map((particle) => markOf(placed, particle, 'cross')),
@@ -143,22 +121,22 @@ export async function seams({ lab, stops }) {
       isFree() && measured
         ? byNeighbours(measured.valence.subarray(0, particles.radii.length))
         : byValue(particles.radii, 0, 2 * particles.radii[0]);
-    // Before the end of the front a press chooses one of the particles to come, so bare surface can be pressed.
-    const places = place < front ? placed : course.at(place);
-    picture.show({ particles, body: course.body, isClosed: isClosed(course.run), places, colours, marks });
+    picture.show({ particles, body: course.body, isClosed: isClosed(course.run), colours, marks });
     picture.ringed.value = (place >= front && isFree() && scores.value[step()]?.places.hole) || null;
   });
-  // The answer concerns the whole front; the next one concerns the steps after it.
+  // The answer concerns the first meeting; the next one concerns the steps after the front.
   let [wasFree, wasRelaxing] = [isFree(), isRelaxing()];
   live(picture.element, () => {
     const [isNow, isAfter] = [isFree() && !wasFree, isRelaxing() && !wasRelaxing];
     [wasFree, wasRelaxing] = [isFree(), isRelaxing()];
-    if (isNow || isAfter) range.set(front);
-    const hole = scores.peek()[0]?.places.hole;
-    if (isNow && hole) orbit.turnTo(hole.normal);
+    if (isAfter) range.set(front);
+    const first = met.findIndex(({ length }) => length > 0);
+    if (!isNow || first < 0) return;
+    range.set(first);
+    orbit.turnTo(triple(placed.normals, met[first][0]));
   });
   const words = h('p', { class: 'figure-count' }, () =>
-    isFree() ? wordsAt(course, range.place.value) : asking(isCovered.value, stops.picked('predict-hole')),
+    isFree() ? wordsAt(course, range.place.value) : 'The slider goes further once you have answered.',
   );
   const play = createPlay(range, { label: 'Play', totalMs: () => STEP_MS * limit() });
   mountSteps({
@@ -195,31 +173,21 @@ function mountSteps({ last, step, stage, go, score }) {
   });
 }
 
-/** Said while the question asks for a place. @param {boolean} isCovered @param {number | null} picked */
-function asking(isCovered, picked) {
-  if (isCovered) return 'Particles lie there already. Press a place that is still bare.';
-  return picked === null
-    ? 'The slider goes on once you have said where.'
-    : 'Your place has a dot. Press another one, or reveal.';
-}
-
 /** The words for a position of the slider. @param {Course} course @param {number} place */
-function wordsAt({ at, found, front, steps }, place) {
+function wordsAt({ at, met, front, steps }, place) {
   if (place > front)
     return `The longest move of this step: ${formatSignificant(Number(steps[place - front - 1].largest_move), 2)} r.`;
-  const met = plural(found[place].length, 'time');
-  return `${plural(at(place).radii.length, 'particle')}; the front met itself ${met} on this level.`;
+  const times = plural(met[place].length, 'time');
+  return `${plural(at(place).radii.length, 'particle')}; on this ring the front met itself ${times}.`;
 }
 
 /**
- * Crosses where the front met itself on a level, a dot where the learner pressed, and arrows for the next step.
+ * Crosses where the front met itself on a ring, and arrows for the next step.
  * @param {Course} course @param {number} place
- * @param {{ picked: number | null, isFree: boolean, isRelaxing: boolean }} state
+ * @param {{ isFree: boolean, isRelaxing: boolean }} state
  */
-function marksAt({ placed, found, front, states }, place, { picked, isFree, isRelaxing }) {
-  const marks = isFree && place <= front ? found[place].map((particle) => markOf(placed, particle, 'cross')) : [];
-  const now = states[place - front] ?? placed;
-  if (picked !== null) marks.push(markOf(now, picked, 'dot'));
+function marksAt({ placed, met, front, states }, place, { isFree, isRelaxing }) {
+  const marks = isFree && place <= front ? met[place].map((particle) => markOf(placed, particle, 'cross')) : [];
   const next = states[place - front + 1];
   return place >= front && isRelaxing && next ? [...marks, ...arrowsOf(states[place - front], next)] : marks;
 }

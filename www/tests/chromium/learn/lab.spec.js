@@ -148,7 +148,7 @@ test('numbers of the text turn the seed, the step of the relaxation and the tole
   const sentence = page.locator('#steps');
   await expect(sentence).toBeHidden();
   await live(page, 'seams');
-  for (const id of ['#predict-hole', '#predict-rest'])
+  for (const id of ['#predict-seam', '#predict-rest'])
     await page.locator(id).getByRole('button', { name: 'Skip' }).click();
   await expect(sentence).toContainText('After 0 of the ten steps the largest hole is 1.49.');
   const step = sentence.getByRole('slider', { name: 'Step of the relaxation' });

@@ -3,7 +3,7 @@ import { expect, test } from 'vitest';
 import { readAddress, stopFor, writeAddress } from '../../../src/learn/address.js';
 import { Stops } from '../../../src/learn/answers.js';
 import { knobDifference, SEED, seedAt, turned, USUAL } from '../../../src/learn/knobs.js';
-import { asFineEverywhere, isBare, nearestDistances, ringsOf, sharpestBend } from '../../../src/learn/measure.js';
+import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend } from '../../../src/learn/measure.js';
 import { cellOf } from '../../../src/learn/patch.js';
 import { bestOf, rowOf, scoreOf, verdictOf } from '../../../src/learn/score.js';
 import { subjectOf } from '../../../src/learn/surface.js';
@@ -52,6 +52,7 @@ test('a link to what the lesson no longer has leads to what is nearest by its co
     ['race', 'cost'],
     ['moving', 'cost'],
     ['predict-moving', 'cost'],
+    ['predict-hole', 'predict-seam'],
     ['predict-few', 'judge'],
     ['what-if-order', 'what-if'],
     ['ringz', ''],
@@ -59,10 +60,6 @@ test('a link to what the lesson no longer has leads to what is nearest by its co
   ])
     expect(stopFor(old, stops), old).toBe(stop);
   expect(readAddress('#rings&mode=present')).toEqual({ stop: 'rings', parts: {} });
-});
-
-test('a press counts where the front has not come yet', () => {
-  expect([0, 41, 42, 100].map((particle) => isBare(42, particle))).toEqual([false, false, true, true]);
 });
 
 test('a surface comes out of a link as it went in, with the way back', () => {
@@ -294,11 +291,10 @@ test('what a learner has guessed is there again, and gone once it is forgotten',
   expect(first.isBegun()).toBe(false);
   first.record({ stop: 'predict-ring', question: 'Q', guess: 66, right: 65, answer: 'A' });
   first.keepMore('plane-plane', { turn: 2 });
-  first.pick('predict-hole', 7);
   const again = new Stops(text, keep);
   expect(again.predictions()).toEqual([{ stop: 'predict-ring', question: 'Q', guess: 66, right: 65, answer: 'A' }]);
-  expect([again.isOpen('predict-ring'), again.isOpen('predict-hole')]).toEqual([true, false]);
-  expect([again.more('plane-plane'), again.more('predict-hole')]).toEqual([{ turn: 2 }, 7]);
+  expect([again.isOpen('predict-ring'), again.isOpen('predict-seam')]).toEqual([true, false]);
+  expect(again.more('plane-plane')).toEqual({ turn: 2 });
   again.forget();
   expect(new Stops(text).isBegun()).toBe(false);
   for (const damaged of ['{', 'null', '3']) expect(new Stops(damaged).isBegun()).toBe(false);
