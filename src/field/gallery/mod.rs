@@ -39,7 +39,7 @@ pub struct Surface {
     #[serde(skip)]
     pub smooth: bool,
     /// Words by which people look for the surface and that its name, formula and story do not have,
-    /// in lower case, with spaces between them.
+    /// in lower case, with spaces between them. Each suggests the surface if it is typed alone.
     pub words: &'static str,
     /// Two sentences about the surface.
     pub story: &'static str,

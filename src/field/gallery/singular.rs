@@ -86,7 +86,7 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(1.9),
         degree: Some(6),
         smooth: false,
-        words: "star icosahedron world record nodes",
+        words: "star nodes",
         story: "65 cone points, arranged with the symmetry of an icosahedron, fifteen of them at \
                 infinity: no surface of degree six has more. Wolf Barth found it in 1996, half a \
                 century after a supposed proof that 52 was the limit.",
