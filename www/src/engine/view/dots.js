@@ -15,9 +15,11 @@ import { NO_LEVEL } from '../columns.js';
 const INK_PX = 1.7;
 const CASING_PX = 0.9;
 /**
- * Smallest radius of the ink in canvas pixels. Renderers draw smaller discs as soft points, which would hide the ink.
+ * Smallest radius of the ink in canvas pixels: renderers draw smaller discs as soft points, which would hide the ink.
+ * Where a moving picture has few pixels it is at most this many page pixels.
  */
 const LEAST_INK = 2.4;
+const MOST_INK_PX = 3;
 
 /**
  * @param {Float32Array} points  three numbers each
@@ -31,7 +33,7 @@ export function dotsOf(points, view, { px, size, lift, palette }) {
   const radii = new Float32Array(2 * n);
   const colours = new Uint32Array(2 * n);
   const { eye, forward } = view;
-  const inkPx = Math.max(INK_PX, LEAST_INK / px);
+  const inkPx = Math.max(INK_PX, Math.min(MOST_INK_PX, LEAST_INK / px));
   for (let i = 0; i < n; i += 1) {
     const toEye = [0, 1, 2].map((k) => eye[k] - points[3 * i + k]);
     const distance = Math.hypot(toEye[0], toEye[1], toEye[2]) || 1;

@@ -185,7 +185,7 @@ export class Painter {
     this.#seen = this.view;
     /** Work for all pictures so far, in pixels. */
     this.work = 0;
-    /** Samples per picture, 1 or all; and the stride: one of this many particles is drawn, enlarged. */
+    /** Samples per picture, 1 or all; and the stride: one of this many particles is drawn, enlarged; marks all are. */
     this.samples = 1;
     this.stride = 1;
     this.width = 0;
@@ -369,7 +369,9 @@ export class Painter {
       faces,
       first,
       beds: body ? every(this.#body) : 0,
-      discs: every(this.#count),
+      discs: every(Math.min(this.#count, this.#body)),
+      // Marks follow the particles.
+      marks: Math.max(0, this.#count - this.#body),
       next: 0,
     };
     if (samples > 1) this.#samples.begin(width * height);
@@ -412,9 +414,9 @@ export class Painter {
    * @returns whether the picture is complete
    */
   #advance(pass, most) {
-    const { faces, beds, discs, timeS, first, samples } = pass;
+    const { faces, beds, discs, marks, timeS, first, samples } = pass;
     const { stride } = this;
-    const end = faces + beds + discs;
+    const end = faces + beds + discs + marks;
     const until = this.work + most;
     for (;;) {
       const { scene } = pass;
@@ -428,7 +430,8 @@ export class Painter {
         }
         k -= faces;
         const isBed = k < beds;
-        const i = first + (isBed ? k : k - beds) * stride;
+        const isMark = k >= beds + discs;
+        const i = isMark ? this.#body + k - beds - discs : first + (isBed ? k : k - beds) * stride;
         if (this.#births[i] > timeS) continue;
         this.work += isBed ? this.#paintBed(i, scene) : this.#paintDisc(i, scene);
       }
@@ -581,7 +584,8 @@ export class Painter {
     // A negative radius means a dot that faces the eye, as in shaders/discs.wgsl.
     const isBall = scene.lights !== null && this.levels[i] !== NO_LEVEL;
     const isDot = this.radii[i] < 0 && !isBall;
-    const radius = Math.abs(this.radii[i]) * disc_scale * scene.swell * (isDot ? DOT : 1);
+    const swell = this.levels[i] === NO_LEVEL ? 1 : scene.swell;
+    const radius = Math.abs(this.radii[i]) * disc_scale * swell * (isDot ? DOT : 1);
     const at = this.#project(PLACE[0], PLACE[1], PLACE[2], scene);
     if (!at || radius === 0) return 0;
     // A dot is moved towards the eye by its radius, so that neighbouring discs do not cut it.

@@ -173,12 +173,13 @@ export interface Pass {
   /** number of samples, and the one that is being painted */
   samples: number;
   sample: number;
-  /** numbers of faces, of discs of the body and of particles, and the first particle that no face stands for */
+  /** numbers of faces, of discs of the body, of particles and of marks, and the first particle that no face stands for */
   faces: number;
   beds: number;
   discs: number;
+  marks: number;
   first: number;
-  /** what is painted next, counted over faces, body and particles */
+  /** what is painted next, counted over faces, body, particles and marks */
   next: number;
 }
 export type Theme = 'light' | 'dark';

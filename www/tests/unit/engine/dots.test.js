@@ -25,6 +25,12 @@ test('a dot is as large on the screen wherever it is, and faces the eye', () => 
   }
 });
 
+test('a dot hardly grows in a picture of few pixels', () => {
+  const view = viewOf(homeCamera(), 800, 600, scene);
+  const [usual, coarse] = [1, 0.4].map((px) => dotsOf(new Float32Array(3), view, { px, size: 1, lift: 0.02, palette }));
+  expect(coarse.radii[0] / usual.radii[0]).toBeLessThan(1.25);
+});
+
 test('a point at the eye or behind it does no harm', () => {
   const view = viewOf(homeCamera(), 800, 600, scene);
   const behind = view.eye.map((v, k) => v - view.forward[k]);

@@ -1,4 +1,5 @@
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
+import { NO_LEVEL } from '../../../src/engine/columns.js';
 import { viewOf } from '../../../src/engine/view/camera.js';
 import { MOST_WORK, Painter } from '../../../src/engine/view/painter.js';
 import { LINEAR, packed } from '../../../src/engine/view/shade.js';
@@ -29,7 +30,7 @@ test('many discs are painted in parts, of which the canvas shows the whole alone
   const camera = { target: [0, 0, 0], distance: 5, yaw: 0.5, pitch: 0.5, fit: false };
   const ball = { centre: [0, 0, 0], radius: 2 };
   painter.set_view(viewOf(/** @type {any} */ (camera), WIDTH, HEIGHT, /** @type {any} */ (ball), undefined).packed);
-  painter.set_count(n, 0);
+  painter.set_count(n, n);
   /** Draws a picture, and returns in how many parts. */
   const parts = () => {
     const before = shown.length;
@@ -60,6 +61,26 @@ test('many discs are painted in parts, of which the canvas shows the whole alone
   painter.choose({ isMoving: true, stride: 1 });
   painter.set_count(10, 0);
   expect(painter.draw(0)).toBe('drawn');
+});
+
+test('a mark is as large and as dark in a moving picture of few particles as in one of all', async () => {
+  const shown = /** @type {Uint8Array[]} */ ([]);
+  const putImageData = (/** @type {ImageData} */ { data }) => shown.push(Uint8Array.from(data));
+  const painter = await Painter.create(/** @type {any} */ ({ getContext: () => ({ putImageData }) }));
+  painter.resize(WIDTH, HEIGHT);
+  painter.set_view(front());
+  // A particle that cannot be seen, and a mark.
+  const normals = Float32Array.of(1, 0, 0, 1, 0, 0);
+  const levels = Uint32Array.of(0, NO_LEVEL);
+  painter.write(0, new Float32Array(6), normals, Float32Array.of(0, 0.1), levels, new Uint32Array(2), -1);
+  painter.set_count(2, 1);
+  for (const stride of [1, 64]) {
+    painter.choose({ isMoving: true, stride });
+    expect(painter.draw(0)).toBe('drawn');
+  }
+  const dark = shown[0].filter((byte, i) => i % 4 === 0 && byte < 128).length;
+  expect(dark).toBeGreaterThan(3);
+  expect(shown[1]).toEqual(shown[0]);
 });
 
 /** A painter of one picture. @param {Float32Array} view */
