@@ -365,12 +365,12 @@ fn paths_and_functions_with_bodies_are_refused_with_what_to_do() {
         "y(u, v) = u cos(v)",
     ] {
         let error = Formula::as_written(text, &[]).expect_err(text);
-        assert!(error.message.contains("Equations are drawn, not paths"), "{text}: {error:?}");
+        assert!(error.message.contains("not surfaces or curves given by parameters"), "{text}: {error:?}");
         assert_eq!((error.suggestion, error.mended), (None, None), "{text}");
     }
     for text in ["1,5", "x, y, z", "x = y = z", "a, b, 2"] {
         let error = Formula::as_written(text, &[]).expect_err(text);
-        assert!(!error.message.contains("not paths"), "{text}: {error:?}");
+        assert!(!error.message.contains("given by parameters"), "{text}: {error:?}");
     }
     // Products.
     for text in ["x(a) = y", "x(a) = 1", "x(y) = a", "x(a + b) = a b", "z(x) = x"] {

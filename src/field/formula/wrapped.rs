@@ -100,8 +100,8 @@ fn function_with_body(plain: &str) -> Option<Range<usize>> {
 }
 
 /// The error message for a surface that is given by its points.
-const NO_PATHS: &str = "Equations are drawn, not paths of parameters. Eliminate these, as in `x^2 + y^2 = 1` for \
-     (cos(u), sin(u), v), or compute points elsewhere and open them as a file";
+const NO_PATHS: &str = "Equations are drawn, not surfaces or curves given by parameters. Eliminate these, as in \
+     `x^2 + y^2 = 1` for (cos(u), sin(u), v), or compute points elsewhere and open them as a file";
 
 /// The error for a coordinate along a path, such as `x(t) = t`, which reads as a product.
 pub(super) fn one_path(text: &str) -> Option<FormulaError> {
