@@ -10,6 +10,7 @@ import { verdictOf } from '../mesh-words.js';
 import { createTrack } from '../track.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 import { createKept } from './kept.js';
+import { rememberSurface } from './last-surface.js';
 
 /**
  * @import { Engine, ReadonlySignal } from '../../engine/types.js'
@@ -30,12 +31,13 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
   // An error in the formula is shown beside the formula instead.
   const lost = computed(() => engine.result.value === 'none' && engine.fieldError.value === null);
+  const createBack = rememberSurface(view, engine);
   const empty = h('div', { class: 'empty', role: 'status', hidden: () => !lost.value }, () => {
     if (!lost.value) return null;
     // The next formula may lack a surface for another reason.
     void engine.field.value;
     void engine.revision.value;
-    return [emptyState(engine), createKept(engine)];
+    return [emptyState(engine, createBack()), createKept(engine)];
   });
   const text = computed(() =>
     told.value
@@ -105,12 +107,11 @@ const EMPTY = {
   undefined: ['Undefined in the whole box', 'Look for the root or logarithm of a negative number, or move the box.'],
 };
 
-/** @param {Engine} engine */
-function emptyState(engine) {
+/** @param {Engine} engine @param {HTMLElement} back  the button that returns to the last surface */
+function emptyState(engine, back) {
   const { message, stop_reason } = engine.progress.peek();
   const nowhere = engine.field.peek()?.reach === 'nowhere';
-  const { surface, formula } = engine.state.peek();
-  const back = button({ press: () => engine.setSurface(surface) }, `Back to the ${nameOf(engine, surface)}`);
+  const { formula } = engine.state.peek();
   const stays = engine.columns.stale ? ' The last surface stays, dimmed, until there is another.' : '';
   const about = engine.description.peek();
   const meant = about ? meantBy(about, formula) : [];
@@ -143,12 +144,6 @@ function emptyState(engine) {
       back,
     ),
   ];
-}
-
-/** The name of a surface in a sentence. @param {Engine} engine @param {string} id */
-function nameOf({ description }, id) {
-  const { surfaces = [], models = [] } = description.peek() ?? {};
-  return [...surfaces, ...models].find((entry) => entry.id === id)?.name ?? 'file';
 }
 
 /**
