@@ -211,13 +211,22 @@ const LEAST_SIZE = 0.7;
  * @param {Engine} engine @param {HTMLElement} fault  lies over it
  */
 function createShown(engine, fault) {
+  // A text without x, y and z, such as a word, is no formula of a surface.
+  const isFormula = computed(() => {
+    const field = engine.field.value;
+    return !field || field.model !== null || field.periods.some((period) => period !== 0);
+  });
+  let written = 'null';
   // Compared as text, it stays equal while a parameter changes, so it is not drawn and measured again.
-  const written = computed(() => JSON.stringify(engine.field.value?.mathml ?? null));
-  const math = computed(() => /** @type {MathNode | null} */ (JSON.parse(written.value)));
-  // While the formula cannot be read, the last readable one stays, with a caption that says so.
-  const isLast = computed(() => engine.fieldError.value !== null && math.value !== null);
+  const last = computed(() => {
+    if (isFormula.value) written = JSON.stringify(engine.field.value?.mathml ?? null);
+    return written;
+  });
+  const math = computed(() => /** @type {MathNode | null} */ (JSON.parse(last.value)));
+  // While the text is no formula, the last one stays, with a caption that says so.
+  const isLast = computed(() => (engine.fieldError.value !== null || !isFormula.value) && math.value !== null);
   const id = uniqueId('preview');
-  const last = h(
+  const caption = h(
     'p',
     { class: 'visually-hidden', id, hidden: () => !isLast.value },
     'The last formula that could be read:',
@@ -258,7 +267,7 @@ function createShown(engine, fault) {
     if (preview.clientWidth !== width) fit();
     width = preview.clientWidth;
   }).observe(preview);
-  return h('div', { class: 'code-shown' }, fault, last, preview, createUnchanging(engine));
+  return h('div', { class: 'code-shown' }, fault, caption, preview, createUnchanging(engine));
 }
 
 /**

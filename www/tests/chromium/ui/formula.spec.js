@@ -89,6 +89,14 @@ test('a formula is typed, and mended', async ({ page }) => {
     await expect(preview).toHaveAccessibleDescription('');
     await typeFormula(page, 'x^2 + y^2 +');
     await expect(preview).toHaveAccessibleDescription('The last formula that could be read:');
+    // A word is none.
+    await typeFormula(page, 'x^2 + y^4 = 1');
+    await expect(preview).toHaveAccessibleDescription('');
+    for (const text of ['heart', 'heart +']) {
+      await typeFormula(page, text);
+      await expect(preview).toHaveAccessibleDescription('The last formula that could be read:');
+      await expect(preview).toHaveText('x2+y4=1');
+    }
     await typeFormula(page, 'x^2 + y^2 + z^2 = 1');
     await expect(preview).toHaveAccessibleDescription('');
   });
