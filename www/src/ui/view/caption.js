@@ -13,6 +13,13 @@ export const revealOf = ({ level, particles }) =>
 /** Returns the caption while a model or a file is loading. @param {Loading} loading */
 export const loadingOf = ({ name, label, fraction }) => `${name} · ${label} · ${formatShare(fraction, 0)}`;
 
+/** Where a run has stopped, after `Stopped`; empty if it placed nothing. @param {Progress} progress */
+function placeOf({ level, refine_level: refined, refine_levels: most, relax_step: step, relax_steps: steps }) {
+  if (step > 0) return ` after relaxation ${formatCount(step)} of ${formatCount(steps)}`;
+  if (refined > 0) return ` refining, level ${formatCount(refined)} of ${formatCount(most)}`;
+  return level > 0 ? ` at level ${formatCount(level)}` : '';
+}
+
 /**
  * @param {Progress} progress
  * @param {CaptionFacts} facts
@@ -52,7 +59,7 @@ export function captionOf(progress, { partial, empty, busy, seconds, steps }) {
   function resting() {
     if (empty) return '';
     if (progress.stop_reason === 'cap') return `Stopped at the limit · ${particles}`;
-    if (partial || progress.stop_reason === 'cancelled') return `Stopped · ${particles}`;
+    if (partial || progress.stop_reason === 'cancelled') return `Stopped${placeOf(progress)} · ${particles}`;
     if (progress.particles === 0) return '';
     if (seconds === null) return particles;
     return `${particles} · ${formatSeconds(seconds)}${steps > 0 ? ` for ${lastSteps(steps)}` : ''}`;

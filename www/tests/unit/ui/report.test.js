@@ -255,9 +255,15 @@ describe('the caption', () => {
 
   it('says so when a run was stopped or met its limit', () => {
     const done = { ...progress, phase: 'done' };
-    expect(captionOf({ ...done, stop_reason: 'cancelled' }, { ...facts, busy: false, partial: true })).toBe(
-      'Stopped · 1,463 particles',
-    );
+    const stopped = (/** @type {object} */ place) =>
+      captionOf(
+        { ...done, relax_step: 0, refine_level: 0, stop_reason: 'cancelled', ...place },
+        { ...facts, busy: false, partial: true },
+      );
+    expect(stopped({})).toBe('Stopped at level 12 · 1,463 particles');
+    expect(stopped({ relax_step: 4 })).toBe('Stopped after relaxation 4 of 10 · 1,463 particles');
+    expect(stopped({ refine_level: 2 })).toBe('Stopped refining, level 2 of 4 · 1,463 particles');
+    expect(stopped({ level: 0 })).toBe('Stopped · 1,463 particles');
     expect(captionOf({ ...done, particles: 0 }, { ...facts, busy: false })).toBe('');
     expect(captionOf({ ...done, stop_reason: 'cap' }, { ...facts, busy: false, partial: true })).toBe(
       'Stopped at the limit · 1,463 particles',
