@@ -32,7 +32,7 @@ export function mountSampling(body, engine, { settings }, { head, brush }) {
     h(
       'div',
       { class: 'sampling-head' },
-      h('h2', { class: 'sampling-title' }, 'Sampling'),
+      h('h2', { class: 'sampling-title fold-title' }, 'Sampling'),
       kind ? create(kind) : null,
       createActions(engine),
       head,

@@ -199,7 +199,7 @@ test('at rest there are few controls in view; the others come with the pointer o
   });
 
   await test.step('the sampling part has the rest', async () => {
-    await page.getByRole('button', { name: 'Unfold sampling' }).click();
+    await page.getByRole('heading', { name: 'Sampling' }).click();
     for (const name of ['Run', 'Stop', 'Without relaxing', 'Relax one step'])
       await expect(page.locator('#panel-sampling').getByRole('button', { name, exact: true })).toBeVisible();
     await expect(page.getByRole('radio', { name: 'Adaptive' })).toBeVisible();
