@@ -130,6 +130,8 @@ export async function createBench(host, lab, { locks = [], onChoice = () => {} }
   return {
     open,
     setup: () => setup.peek(),
+    /** The worst sampling found so far on the chosen surface. */
+    worst: computed(() => tries.value.ends.value.at(-1)),
     /** Resolves once the runs shown are measured. */
     settled: () => shown,
     /** The runs shown and the stored runs, each once, with names, once they are measured. */

@@ -12,6 +12,7 @@ import { FIGURES } from './chapters/index.js';
 import { mountFigure } from './figure.js';
 import { openSubject } from './lesson-lab.js';
 import { QUESTIONS } from './questions.js';
+import { written } from './score.js';
 import { keepSetup, mountStops } from './stops.js';
 import { mountTerms } from './terms.js';
 
@@ -46,6 +47,16 @@ mountTerms();
 const bench = lab.then(async (ready) => {
   const { createBench } = await import('./bench.js');
   return createBench(byId('bench'), ready, { onChoice: keepSetup });
+});
+/** A sampling has failed if a smaller share keeps six neighbours. */
+const FAILED = 0.5;
+void bench.then(({ worst }) => {
+  const done = byId('what-if-done');
+  live(done, () => {
+    const score = worst.value?.score;
+    const isDone = score && score.six !== null && score.six < FAILED;
+    done.textContent = isDone ? `Done: only ${written('six', score)} have six neighbours.` : '';
+  });
 });
 const say = (/** @type {string} */ words) => {
   notice.textContent = words;
