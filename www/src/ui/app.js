@@ -37,7 +37,7 @@ import { createToolbar } from './view/toolbar.js';
 export function mountInterface(engine, { grabs = false } = {}) {
   const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
   const [field, levels, sampling, report] = ['field', 'levels', 'sampling', 'report'].map((id) => byId(`panel-${id}`));
-  const toast = mountToasts(
+  const { toast, dismiss } = mountToasts(
     byId('toasts'),
     engine,
     ({ id, details }) => id === 'file' && !details && byId('field-body').checkVisibility(),
@@ -48,6 +48,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     shell,
     view,
     nav: byId('tabs'),
+    notices: byId('toasts'),
     panels: [
       { id: 'field', title: 'Surface', panel: field, head: head(field) },
       { id: 'sampling', title: 'Sampling', panel: sampling, head: samplingTools, folded: true },
@@ -85,7 +86,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
       open: () => shortcuts.open(),
     }),
   );
-  stopByEscape(engine, motion);
+  endByEscape(engine, { motion, dismiss });
 
   followTheme(engine);
   nameTab(engine);
@@ -242,27 +243,27 @@ function pictureOf(engine, motion, toast) {
 }
 
 /**
- * Makes Escape stop a run wherever the focus is, unless it has a dialog or a list of completions to close.
+ * Makes Escape stop a run, or the growth that is shown after it, wherever the focus is; else it closes a notice. A
+ * drag, a dialog and a list of completions come first.
  * @param {Engine} engine
- * @param {Motion} motion
+ * @param {{ motion: Motion, dismiss: () => boolean }} page
  */
-function stopByEscape(engine, motion) {
-  const stop = (/** @type {KeyboardEvent} */ event) => {
-    if (event.key !== 'Escape' || event.isComposing || !(engine.status.peek() === 'sampling' || engine.loading.peek()))
-      return;
-    // Escape then cancels the drag.
-    if (engine.dragging.peek()) return;
+function endByEscape(engine, { motion, dismiss }) {
+  const end = (/** @type {KeyboardEvent} */ event) => {
+    if (event.key !== 'Escape' || event.isComposing || engine.dragging.peek()) return;
     const within = event.composedPath();
     const isCompleting = within.some(
       (node) => node instanceof ShadowRoot && node.querySelector('.cm-tooltip-autocomplete'),
     );
     if (isCompleting || document.querySelector('dialog[open]')) return;
+    if (engine.status.peek() === 'sampling' || engine.loading.peek() || engine.reveal.peek()) {
+      if (!motion.stop()) engine.stop();
+    } else if (!dismiss()) return;
     event.preventDefault();
     event.stopPropagation();
-    if (!motion.stop()) engine.stop();
   };
   // Capturing, so that it runs before the focused element's own handler.
-  addEventListener('keydown', stop, true);
+  addEventListener('keydown', end, true);
 }
 
 /**
@@ -279,13 +280,12 @@ function shortcutsOf(engine, { history, motion, pins, brush, print, timeline, hi
     {
       keys: ['Escape'],
       shown: 'Esc',
-      label: 'Stop; leave Grab, the brush or measuring',
+      label: 'Stop; close a notice; leave Grab, the brush or measuring',
       act: () => {
         if (motion.stop()) return;
         if (pins.peek()) pins.value = null;
         else if (brush.on.peek()) brush.on.value = false;
         else if (engine.state.peek().view.measured) engine.setView({ measured: null });
-        else if (engine.status.peek() === 'sampling' || engine.loading.peek()) engine.stop();
         else engine.pointOut(null);
       },
     },

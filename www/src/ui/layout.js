@@ -21,7 +21,7 @@ const COMPACT = '(max-width: 44.95em)';
  */
 
 /** @param {LayoutOptions} parts */
-export function mountLayout({ shell, view, nav, panels, covered, inset }) {
+export function mountLayout({ shell, view, nav, panels, notices, covered, inset }) {
   for (const { title, panel, head, folded = false } of panels) if (head) addFold(title, panel, head, folded);
 
   /** @type {Signal<HTMLElement | null>} */
@@ -62,6 +62,8 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
     // On a phone the tools, the legend and the foot would cover the surface, so their areas are not free. In a larger
     // window only the legend's corner is kept free.
     const [aside, above] = compact.matches ? [tools.clientWidth, legend.clientHeight] : [0, 0];
+    const free = { top: top + legend.clientHeight, left, right: innerWidth - right + tools.clientWidth };
+    for (const [side, px] of Object.entries(free)) notices.style.setProperty(`--notices-${side}`, `${px}px`);
     const foot = compact.matches ? (view.querySelector('.foot')?.getBoundingClientRect().top ?? bottom) : bottom;
     inset({
       left,
@@ -89,20 +91,20 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
 function addFold(title, panel, head, folded) {
   const name = title.toLowerCase();
   const isFolded = remembered(`fold-${name}`, folded);
-  head.append(
-    explain(
-      button({
-        class: 'plain square fold',
-        icon: () => (isFolded.value ? 'unfold' : 'fold'),
-        'aria-controls': panel.id,
-        'aria-expanded': () => String(!isFolded.value),
-        'aria-label': () => (isFolded.value ? `Unfold ${name}` : `Fold ${name}`),
-        press: () => {
-          isFolded.value = !isFolded.peek();
-        },
-      }),
-      () => ({ text: isFolded.peek() ? 'Unfold' : 'Fold' }),
-    ),
-  );
+  const fold = button({
+    class: 'plain square fold',
+    icon: () => (isFolded.value ? 'unfold' : 'fold'),
+    'aria-controls': panel.id,
+    'aria-expanded': () => String(!isFolded.value),
+    'aria-label': () => (isFolded.value ? `Unfold ${name}` : `Fold ${name}`),
+    press: () => {
+      isFolded.value = !isFolded.peek();
+    },
+  });
+  head.append(explain(fold, () => ({ text: isFolded.peek() ? 'Unfold' : 'Fold' })));
+  // Without the button, on a phone, nothing is folded.
+  panel.addEventListener('click', ({ target }) => {
+    if (target instanceof Element && target.matches('.fold-title') && fold.checkVisibility()) fold.click();
+  });
   live(panel, () => panel.toggleAttribute('data-folded', isFolded.value));
 }

@@ -14,12 +14,17 @@ const STAY_MS = 6000;
  * @param {HTMLElement} host
  * @param {Engine} engine
  * @param {(notice: Notice) => boolean} isTold whether another part of the page already shows it
+ * @returns {{ toast: Toast, dismiss: () => boolean }}  `dismiss` removes the newest notice that stays, and returns
+ *   whether there was one
  */
 export function mountToasts(host, engine, isTold) {
   // Screen readers announce what is added to an existing region: at once in an alert, in a pause in a status.
   const alerts = host.appendChild(h('div', { role: 'alert' }));
   const status = host.appendChild(h('div', { role: 'status' }));
-  /** @type {Map<string, { element: HTMLElement, timer: number }>} */
+  /**
+   * By their names, the newest last; one without a timer stays.
+   * @type {Map<string, { element: HTMLElement, timer: number }>}
+   */
   const shown = new Map();
 
   /** @param {string} id */
@@ -55,8 +60,15 @@ export function mountToasts(host, engine, isTold) {
       partsOf(notice, () => remove(id)),
     );
     const stays = kind === 'error' || Boolean(notice.action ?? notice.details ?? notice.asks);
+    shown.delete(id);
     shown.set(id, { element, timer: stays ? 0 : count(id, element) });
   };
+
+  function dismiss() {
+    const newest = [...shown].findLast(([, { timer }]) => timer === 0);
+    if (newest) remove(newest[0]);
+    return newest !== undefined;
+  }
 
   let last = '';
   live(host, () => {
@@ -66,7 +78,7 @@ export function mountToasts(host, engine, isTold) {
     if (isTold(notice)) queueMicrotask(() => engine.dismissNotice());
     else toast(notice);
   });
-  return toast;
+  return { toast, dismiss };
 }
 
 /** The text of a notice, and its action. @param {Notice} notice @param {() => void} remove */

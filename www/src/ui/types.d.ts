@@ -241,6 +241,8 @@ export interface LayoutOptions {
   view: HTMLElement;
   nav: HTMLElement;
   panels: Panel[];
+  /** notices over the picture */
+  notices: HTMLElement;
   /** pixels at the bottom of the view that something else than panels covers */
   covered: () => number;
   inset: (insets: Insets) => void;

@@ -51,7 +51,10 @@ export function runCommands({ store, columns, sampler, picture: { viewer } }) {
       viewer.meshed();
       store.mesh.value = columns.mesh.about;
     },
-    stop: () => sampler.stop(),
+    stop() {
+      sampler.stop();
+      viewer.complete();
+    },
     generateOnly() {
       if (unrelaxed(patternOf(store.state.value.settings))) return;
       const settings = { ...completeSettings(description(store), store.state.value.settings), relax_steps: 0 };

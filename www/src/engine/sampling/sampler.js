@@ -196,7 +196,7 @@ export class Sampler {
     const raised = Math.ceil(predicted * description(store).limits.count_room);
     store.notice.value = {
       id: 'size',
-      kind: 'warn',
+      kind: 'error',
       text: `About ${predicted.toLocaleString('en')} particles would be needed; the limit is ${limit.toLocaleString('en')}.`,
       action: {
         label: 'Sample them anyway',

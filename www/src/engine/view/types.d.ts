@@ -173,11 +173,12 @@ export interface Pass {
   /** number of samples, and the one that is being painted */
   samples: number;
   sample: number;
-  /** numbers of faces, of discs of the body, of particles and of marks, and the first particle that no face stands for */
+  /** numbers of faces, of discs of the body, of particles and of marks */
   faces: number;
   beds: number;
   discs: number;
   marks: number;
+  /** the first particle that no face stands for */
   first: number;
   /** what is painted next, counted over faces, body, particles and marks */
   next: number;

@@ -215,10 +215,7 @@ export class Viewer {
     this.remembered();
     if (level !== before.level || this.look.insets !== before.insets) this.#frameFront();
     // A running reveal would continue behind the levels that the user steps through.
-    if (level !== null && this.reveal.active) {
-      this.#endReveal();
-      this.upload.all();
-    }
+    if (level !== null) this.complete();
     this.#restyle();
   }
 
@@ -244,7 +241,12 @@ export class Viewer {
     this.keeper.seen(isSeen);
     this.frames.see(isSeen);
     // A surface that grows out of sight is completed at once.
-    if (isSeen || !this.reveal.active) return;
+    if (!isSeen) this.complete();
+  }
+
+  /** Ends a reveal: what has been placed is shown at once. */
+  complete() {
+    if (!this.reveal.active) return;
     this.#endReveal();
     this.upload.all();
   }

@@ -232,6 +232,14 @@ test('the run and its buttons', { tag: '@all' }, async ({ page }) => {
     await limit.press('Enter');
     const notice = page.locator('.toast');
     await expect(notice).toContainText('limit is 2,000');
+    expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(true);
+    const [legend, box] = [await page.locator('.legend').boundingBox(), await notice.boundingBox()];
+    expect(legend && box && box.y - legend.y - legend.height, 'below the legend').toBeGreaterThanOrEqual(0);
+    await page.keyboard.press('Escape');
+    await expect(notice).toBeHidden();
+    await limit.fill('2001');
+    await limit.press('Enter');
+    await expect(notice).toContainText('limit is 2,001');
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(
       before.count,
     );
@@ -257,7 +265,7 @@ test('the run and its buttons', { tag: '@all' }, async ({ page }) => {
         if (button.textContent === 'Stop') /** @type {HTMLElement} */ (button).click();
       return true;
     });
-    await expect(page.locator('.caption')).toContainText('Stopped');
+    await expect(page.locator('.caption')).toContainText(/Stopped (at level|after relaxation) \d/);
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(true);
   });
   await clean();
@@ -333,9 +341,13 @@ test('the report, what can be taken away, and what is said where there is no sur
     await typeFormula(page, 'x^2 +');
     await expect(page.locator('.empty')).toBeHidden();
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(true);
-    await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
-    await page.getByRole('button', { name: /^Back to the / }).click();
+    await typeFormula(page, 'x^2 + y^4 + z^4 = 1');
     await settled(page);
+    await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
+    // The way back leads to what was there last.
+    await page.getByRole('button', { name: 'Back to the last surface' }).click();
+    await settled(page);
+    expect((await state(page)).formula).toBe('x^2 + y^4 + z^4 = 1');
     await expect(page.locator('.empty')).toBeHidden();
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(false);
     expect((await report(page)).count).toBeGreaterThan(100);
