@@ -1,16 +1,12 @@
-/** Shows the caption, the hint and the empty state on the picture, and hides the poster. */
+/** Shows the caption and the hint on the picture, has the empty state shown, and hides the poster. */
 
 import { computed } from '@preact/signals-core';
-import { enlarge } from '../box.js';
-import { button } from '../button.js';
-import { h, live, marked } from '../dom.js';
+import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
-import { meantBy, questionOf } from '../meant.js';
 import { verdictOf } from '../mesh-words.js';
 import { createTrack } from '../track.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 import { createKept } from './kept.js';
-import { rememberSurface } from './last-surface.js';
 
 /**
  * @import { Engine, ReadonlySignal } from '../../engine/types.js'
@@ -31,14 +27,11 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
   // An error in the formula is shown beside the formula instead.
   const lost = computed(() => engine.result.value === 'none' && engine.fieldError.value === null);
-  const createBack = rememberSurface(view, engine);
-  const empty = h('div', { class: 'empty', role: 'status', hidden: () => !lost.value }, () => {
-    if (!lost.value) return null;
-    // The next formula may lack a surface for another reason.
-    void engine.field.value;
-    void engine.revision.value;
-    return [emptyState(engine, createBack()), createKept(engine)];
-  });
+  const empty = h('div', { class: 'empty', role: 'status', hidden: () => !lost.value });
+  import('./empty.js').then(
+    ({ fillEmpty }) => fillEmpty(empty, engine, lost),
+    () => {},
+  );
   const text = computed(() =>
     told.value
       ? told.value.title
@@ -99,51 +92,6 @@ function meshOf(engine) {
   if (engine.state.value.view.draw !== 'mesh' || engine.result.value === 'none') return '';
   const mesh = engine.mesh.value;
   return mesh && engine.status.value !== 'sampling' && !engine.reveal.value ? verdictOf(mesh) : '';
-}
-
-/** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */
-const EMPTY = {
-  constant: ['There is no x, y or z in it', 'Write x, y or z into the formula.'],
-  undefined: ['Undefined in the whole box', 'Look for the root or logarithm of a negative number, or move the box.'],
-};
-
-/** @param {Engine} engine @param {HTMLElement} back  the button that returns to the last surface */
-function emptyState(engine, back) {
-  const { message, stop_reason } = engine.progress.peek();
-  const nowhere = engine.field.peek()?.reach === 'nowhere';
-  const { formula } = engine.state.peek();
-  const stays = engine.columns.stale ? ' The last surface stays, dimmed, until there is another.' : '';
-  const about = engine.description.peek();
-  const meant = about ? meantBy(about, formula) : [];
-  if (meant.length > 0)
-    return [
-      h('h2', null, questionOf(meant)),
-      h('p', { class: 'quiet' }, `A surface is a formula in x, y and z.${stays}`),
-      h(
-        'div',
-        { class: 'empty-actions' },
-        meant.map(({ id, name }) => button({ press: () => engine.setSurface(id) }, `Show the ${name}`)),
-        back,
-      ),
-    ];
-  const [title, remedy] =
-    EMPTY[stop_reason ?? ''] ??
-    (nowhere
-      ? ['No surface within ±10,000', 'Change the formula: the two sides are never equal there.']
-      : ['No surface inside the box', 'Change the formula, or widen the box.']);
-  return [
-    h('h2', null, title),
-    message && !nowhere
-      ? h('p', { class: `quiet ${stop_reason === 'constant' ? '' : 'reason'}` }, marked(message))
-      : null,
-    h('p', { class: 'quiet' }, `${remedy}${stays}`),
-    h(
-      'div',
-      { class: 'empty-actions' },
-      stop_reason === 'no_surface' && !nowhere ? button({ press: () => enlarge(engine) }, 'Double the box') : null,
-      back,
-    ),
-  ];
 }
 
 /**
