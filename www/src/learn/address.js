@@ -22,6 +22,7 @@ const GONE = {
   'predict-few': 'judge',
   'predict-chance': 'judge',
   'predict-hole': 'predict-seam',
+  'predict-cost': 'predict-pushes',
 };
 
 /** @typedef {{ stop: string, parts: Record<string, string> }} Address */

@@ -175,7 +175,7 @@ export const QUESTIONS = {
             `All as small as the smallest of them, they would be about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many: the sharpest bend, where the picture has its smallest discs, would rule the flat parts, too.`,
           ],
   }),
-  'predict-cost': one({
+  'predict-pushes': one({
     question: 'How many pushes does a particle get in the ten steps of relaxation, on average?',
     kind: 'number',
     label: 'Pushes for each particle',

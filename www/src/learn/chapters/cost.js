@@ -15,7 +15,7 @@ export async function cost({ lab, stops }) {
     ['rounds', 'Rounds'],
   ]);
   const most = kinds.map(([kind]) => Math.max(1e-9, ...rows.map((row) => row[kind])));
-  const isOpen = () => stops.isOpen('predict-cost');
+  const isOpen = () => stops.isOpen('predict-pushes');
   const cell = (/** @type {number} */ value, /** @type {number} */ of) => [
     h('span', { class: 'cost-number' }, () => (isOpen() ? formatSignificant(value, 3) : '?')),
     h('span', { class: 'cost-bar', style: { width: () => `${isOpen() ? (100 * value) / of : 0}%` } }),

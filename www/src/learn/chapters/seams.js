@@ -129,7 +129,9 @@ export async function seams({ lab, stops }) {
   live(picture.element, () => {
     const [isNow, isAfter] = [isFree() && !wasFree, isRelaxing() && !wasRelaxing];
     [wasFree, wasRelaxing] = [isFree(), isRelaxing()];
+    const hole = scores.peek()[0]?.places.hole;
     if (isAfter) range.set(front);
+    if (isAfter && hole) orbit.turnTo(hole.normal);
     const first = met.findIndex(({ length }) => length > 0);
     if (!isNow || first < 0) return;
     range.set(first);

@@ -148,8 +148,8 @@ const classOf = (count) =>
         answers: [{ question: 'Why?', answer: `<b>Because</b> of ${k}` }],
         predictions: [
           {
-            ...{ stop: 'predict-cost', question: 'What takes more?', guess: k % 3 ? 'alike' : 'placing' },
-            ...{ right: 'placing', answer: 'Placing took 15.' },
+            ...{ stop: 'predict-rest', question: 'What has changed?', guess: k % 3 ? 'both' : 'hole' },
+            ...{ right: 'hole', answer: 'The largest hole was 1.49.' },
           },
           {
             ...{ stop: 'predict-ring', question: 'How many in ring 12?', guess: [72, 66, 60, 72, null][k % 5] },
@@ -191,11 +191,12 @@ test('a lecturer drops thirty files and sees the answers beside what the run say
   const bars = collected.locator('.guesses');
   await expect(bars).toHaveCount(2);
   await expect(bars.first().locator('.bar-row')).toHaveText([
-    'Placing all particles right10',
-    'Both about the same20',
-    'The ten steps of relaxation0',
+    'The largest hole right10',
+    'The share with six neighbours0',
+    'Both20',
+    'Neither0',
   ]);
-  await expect(bars.first()).toContainText('Placing took 15.');
+  await expect(bars.first()).toContainText('The largest hole was 1.49.');
   await expect(bars.last().locator('.bar-row')).toHaveText(['606', '66 right6', '7212']);
   await expect(bars.last()).toContainText('6 learners skipped it.');
   await expect(bars.locator('[data-right]')).toHaveCount(2);
@@ -207,7 +208,7 @@ test('a lecturer drops thirty files and sees the answers beside what the run say
   const second = table.locator('tbody tr').nth(1);
   await expect(second).toContainText('Learner 3');
   await expect(second).toContainText('<b>Because</b> of 2');
-  await expect(second).toContainText('Both about the same');
+  await expect(second).toContainText('Both');
   const runs = collected.getByRole('region', { name: 'What their runs give' });
   await expect(runs.locator('tbody tr')).toHaveText([/^0\.7.*1\.23.*30$/, /^0\.3.*1\.50.*5$/]);
   const [file] = await Promise.all([

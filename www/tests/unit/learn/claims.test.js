@@ -381,7 +381,7 @@ test('the first seam is on the first ring without six more than the one before, 
   const [{ valence }] = await scoresOfRest(lab);
   expect(Math.min(...levels.filter((_, particle) => valence[particle] !== 6))).toBe(10);
   // Six neighbours in ten steps, and some more where rows do not fit; in a plane the ends of the rows have fewer.
-  const pushes = await answerOf('predict-cost');
+  const pushes = await answerOf('predict-pushes');
   expect(pushes.right).toEqual([66]);
   says('which a particle gets from those within 3<i>r</i>');
   expect(read('../src/paper/relaxation.rs')).toContain('GAUSSIAN_REACH: f64 = 3.0;');

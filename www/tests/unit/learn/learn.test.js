@@ -53,6 +53,7 @@ test('a link to what the lesson no longer has leads to what is nearest by its co
     ['moving', 'cost'],
     ['predict-moving', 'cost'],
     ['predict-hole', 'predict-seam'],
+    ['predict-cost', 'predict-pushes'],
     ['predict-few', 'judge'],
     ['what-if-order', 'what-if'],
     ['ringz', ''],
