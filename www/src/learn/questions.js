@@ -65,7 +65,7 @@ export const QUESTIONS = {
     ],
   }),
   'predict-ring': one({
-    question: 'On a plane, ring 12 has 72 particles. How many has it on this surface?',
+    question: 'How many particles has ring 12 on this surface?',
     kind: 'number',
     label: 'Particles in ring 12',
     async ask(lab) {

@@ -173,7 +173,7 @@ test('what the text states of the first particles is so in a plane, and in the c
 
 test('what the text states of rings, tolerance and rest is so in the run', async () => {
   const run = await lab.run({}, { keep: true });
-  says('On a plane, ring 12 has 72 particles.');
+  says('How many particles has ring 12 on this surface?');
   says('if it lies within the <dfn>tolerance</dfn> of it, 1.4 <i>r</i>');
   says(
     'has a queue and the tolerance <span data-number="knob" title="Tolerance of the sampling on the right">1.4 <i>r</i></span>, and is relaxed by ten steps',
