@@ -153,6 +153,12 @@ mod with_meshes {
             Self { solid: self.solid.with_edges_along(segments), ..self }
         }
 
+        /// The repaired mesh.
+        #[must_use]
+        pub fn solid(&self) -> &MeshSolid {
+            &self.solid
+        }
+
         /// Expected number of slices to make a field.
         pub(in super::super) fn field_slices(&self) -> u64 {
             self.solid.field_slices()

@@ -2,6 +2,7 @@
 #![cfg(target_arch = "wasm32")]
 
 mod combined;
+mod mesh;
 
 use glam::{DVec3, Vec3};
 use js_sys::{Float64Array, Function, Uint8Array, Uint32Array};
@@ -274,20 +275,6 @@ impl Core {
             .map_err(|error| Fault::new(FaultKind::Mesh, &error))
             .and_then(|mesh| OpenedMesh::new(&mesh));
         to_js(&mesh.map(|mesh| self.opened = Some((name, Opened::Mesh(mesh)))).err())
-    }
-
-    /// Keeps the edges of the last opened mesh along these segments sharp, six numbers each, in the
-    /// next field that is set; none keeps those that its angle tells. Does nothing for an image.
-    pub fn mark_edges(&mut self, segments: &[f64]) {
-        let segments: Vec<[DVec3; 2]> = segments
-            .as_chunks::<6>()
-            .0
-            .iter()
-            .map(|&[a, b, c, d, e, f]| [DVec3::new(a, b, c), DVec3::new(d, e, f)])
-            .collect();
-        if let Some((_, Opened::Mesh(mesh))) = &mut self.opened {
-            *mesh = mesh.clone().with_edges_along(&segments);
-        }
     }
 
     /// Forgets the last opened file. The present field keeps its own copy.

@@ -176,11 +176,20 @@ export class Core {
      */
     measure_placed(positions: Float32Array | number[], normals: Float32Array | number[], radii: Float32Array | number[], is_adaptive: boolean): Measures;
     /**
+     * The three vertices of each of its faces, counter-clockwise seen from outside.
+     */
+    mesh_faces(): Uint32Array<ArrayBuffer>;
+    /**
      * The mesh as a file with its record, from a `FileRequest`, doing up to `budget` slices of the
      * work: its bytes once complete, undefined before; null for an unknown extension or if it is
      * too large.
      */
     mesh_file(request: Partial<FileRequest>, budget: number): Uint8Array<ArrayBuffer> | null | undefined;
+    /**
+     * Three coordinates for each vertex of the last opened mesh, as it was repaired; empty for an
+     * image.
+     */
+    mesh_vertices(): Float64Array<ArrayBuffer>;
     /**
      * Distance to the nearest particle, from the last report.
      */
