@@ -23,6 +23,8 @@ export const TYPING_MS = 600;
 export const MOST_PARAMETERS = 64;
 /** Largest number of pulls on a surface. */
 export const MOST_PULLS = 32;
+/** Largest number of points of the lines along which edges of a mesh are marked; a link holds them. */
+export const MOST_LINE_POINTS = 1000;
 /** File extensions of points for `openFile`, in the form of a file chooser's `accept` attribute. */
 export const FILE_TYPES = '.ply,.obj,.stl,.off,.glb,.3mf,.pcd,.xyz,.pts,.csv,.txt,.asc';
 /** File extensions of triangle meshes, whose files may hold only points. */

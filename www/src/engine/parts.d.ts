@@ -3,7 +3,7 @@ import type { Framing } from './framing.js';
 import type { ModelLoader } from './points/loader.js';
 import type { Sampler } from './sampling/sampler.js';
 import type { Store } from './store.js';
-import type { BackendKind, Columns, State, Take } from './types.js';
+import type { BackendKind, Columns, Notices, State, Take } from './types.js';
 import type { Viewer } from './view/viewer.js';
 
 /** The parts of the engine, on which its commands act. */
@@ -22,7 +22,7 @@ export interface Picture {
   /** reports the particle under a point of the host, or null for none */
   hover: (index: number | null, x: number, y: number, tapped?: boolean) => void;
   /** what a press takes hold of */
-  hand: { take: Take };
+  hand: { take: Take; notices: Notices };
   close: () => void;
 }
 export interface PictureOptions {

@@ -59,7 +59,7 @@ export function createPicture({ host, store, columns, first }) {
   };
 
   /** @type {Picture['hand']} */
-  const hand = { take: () => null };
+  const hand = { take: () => null, notices: () => false };
   const detach = attachControls({
     host,
     camera: viewer.camera,
@@ -67,6 +67,7 @@ export function createPicture({ host, store, columns, first }) {
     moved: () => viewer.moved(),
     fit: () => viewer.fit(),
     point(x, y, tapped) {
+      if (hand.notices({ x, y }, tapped)) return;
       if (!tapped && store.hover.value?.tapped) return;
       const held = tapped ? hand.take({ x, y }, false) : null;
       // Enter presses the middle of the picture. A pointer's press was taken already.

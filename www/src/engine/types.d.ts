@@ -105,7 +105,7 @@ export interface ColumnRange {
  * `points` names a solved model; with it the clip box, the pulls and a formula that names the model
  * count.
  */
-export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };
+export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string; lines?: Line[] };
 /** By the settings' names; a missing one has its default. `brush` holds the text of what is painted. */
 export type Settings = Record<string, number | string>;
 /**
@@ -183,6 +183,8 @@ export interface State {
   plane: CuttingPlane | null;
   /** on the surface of a model or a file, one after the other; none on a surface from a formula */
   pulls: Pull[];
+  /** along which edges of the mesh of a file stay sharp, whatever their angle */
+  lines: Line[];
   settings: Settings;
   view: ViewState;
 }
@@ -246,6 +248,12 @@ export interface Hold {
 }
 /** Returns what a press takes hold of in place of the camera, if anything. */
 export type Take = (at: { x: number; y: number }, shift: boolean) => Hold | null;
+/** Takes notice of a place that a pointer hovers over or taps; true if that means no particle. */
+export type Notices = (at: { x: number; y: number }, tapped: boolean) => boolean;
+/** The points of a line, in their order. */
+export type Line = Vec3[];
+/** The mesh of a file as it was repaired: three coordinates for each vertex, three vertices for each face. */
+export type MeshFaces = { vertices: Float64Array; faces: Uint32Array };
 /** A ray from the eye; the direction has length 1. */
 export type Ray = { eye: Vec3; direction: Vec3 };
 /** colour is `#rrggbb` */
@@ -405,8 +413,15 @@ export interface EngineCommands {
   pull: (parameters: Record<string, number>, pins: readonly Vec3[], options?: { live?: boolean }) => void;
   /** makes these pulls on the surface of a model, in the place of those before; `live` during a drag */
   setPulls: (pulls: readonly Pull[], options?: { live?: boolean }) => void;
-  /** has a press on the picture take hold of something in place of the camera */
-  takeWith: (take: Take) => void;
+  /**
+   * has a press on the picture take hold of something in place of the camera, and what the pointer is at mean something
+   * else than a particle
+   */
+  takeWith: (take: Take, notices: Notices) => void;
+  /** the mesh of the file; null if the core has none open */
+  meshFaces: () => Promise<MeshFaces | null>;
+  /** keeps the edges of the mesh along these lines sharp, in the place of those before */
+  setLines: (lines: readonly Line[]) => void;
   /** declares an unknown name of the formula as a parameter */
   declareParameter: (name: string) => void;
   /** the number that a text stands for in the language of formulas, such as `pi/2`; null for any other text */

@@ -27,7 +27,7 @@ import { createToolbar } from './view/toolbar.js';
 /**
  * @import { Description, Engine, ReadonlySignal, Signal, ViewState } from '../engine/types.js'
  * @import { Told } from './levels/types.js'
- * @import { Brush, Dialog, Motion, Pins, Shortcut, ShortcutTargets, Toast } from './types.js'
+ * @import { Dialog, Hands, Motion, Shortcut, ShortcutTargets, Toast } from './types.js'
  */
 
 /**
@@ -59,7 +59,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     inset: (insets) => engine.setInsets(insets),
   });
   const motion = createMotion(engine, stage);
-  const { pins, brush } = handsOf(grabs);
+  const { pins, brush, marking } = handsOf(grabs);
   const history = createHistory(
     engine,
     computed(
@@ -80,6 +80,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
       motion,
       pins,
       brush,
+      marking,
       print,
       timeline,
       hide: layout.hideMore,
@@ -105,7 +106,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
   byId('tabs').append(goButton(engine));
 
   void described.then(async (description) => {
-    const shared = { motion, pins, replace: createReplace(engine, toast), print: createPrint(engine) };
+    const shared = { motion, pins, marking, replace: createReplace(engine, toast), print: createPrint(engine) };
     const mesh = createMeshButton(engine, toast, shared.print);
     const [hide, makeMesh] = [layout.hideMore, () => void mesh.open()];
     const tools = { hide, shortcuts: shortcuts.open, picture, makeMesh, motion, toast };
@@ -117,7 +118,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
       () => mountField(byId('field-body'), engine, description, shared),
       () => mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools], brush }),
       () => mountReport(byId('report-body'), engine, description, byId('report-title')),
-      () => loadMarks(engine, { stage, view, pins, brush }),
+      () => loadMarks(engine, { stage, view, pins, brush, marking }),
     ]) {
       // Between two parts the browser can handle input and draw.
       await new Promise((resolve) => setTimeout(resolve));
@@ -131,22 +132,23 @@ export function mountInterface(engine, { grabs = false } = {}) {
 }
 
 /**
- * What a drag over the surface does in place of turning it.
- * @param {boolean} grabs @returns {{ pins: Pins, brush: Brush }}
+ * What a drag over the surface does in place of turning it, and what a press chooses in place of a particle.
+ * @param {boolean} grabs @returns {Hands}
  */
 const handsOf = (grabs) => ({
   pins: signal(grabs ? [] : null),
   brush: { on: signal(false), times: signal('0.5'), share: signal(0.06) },
+  marking: signal(false),
 });
 
 /**
  * Loads the marks on the picture. The picture works without them.
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, view: HTMLElement, pins: Pins, brush: Brush }} parts
+ * @param {{ stage: HTMLElement, view: HTMLElement } & Hands} parts
  */
-function loadMarks(engine, { stage, view, pins, brush }) {
+function loadMarks(engine, parts) {
   import('./view/marks/index.js').then(
-    ({ mountAllMarks }) => mountAllMarks(engine, { stage, host: byId('canvas-host'), view, pins, brush }),
+    ({ mountAllMarks }) => mountAllMarks(engine, { ...parts, host: byId('canvas-host') }),
     () => {},
   );
 }
@@ -272,7 +274,7 @@ function endByEscape(engine, { motion, dismiss }) {
  * @param {ShortcutTargets} page
  * @returns {Shortcut[]}
  */
-function shortcutsOf(engine, { history, motion, pins, brush, print, timeline, hide, open }) {
+function shortcutsOf(engine, { history, motion, pins, brush, marking, print, timeline, hide, open }) {
   const along = (/** @type {'toggle' | 'back' | 'forward' | 'first' | 'all'} */ command) => () =>
     void timeline.then((made) => made?.[command]());
   return [
@@ -280,11 +282,12 @@ function shortcutsOf(engine, { history, motion, pins, brush, print, timeline, hi
     {
       keys: ['Escape'],
       shown: 'Esc',
-      label: 'Stop; close a notice; leave Grab, the brush or measuring',
+        label: 'Stop; close a notice; leave Grab, the brush, measuring or marking',
       act: () => {
         if (motion.stop()) return;
         if (pins.peek()) pins.value = null;
         else if (brush.on.peek()) brush.on.value = false;
+        else if (marking.peek()) marking.value = false;
         else if (engine.state.peek().view.measured) engine.setView({ measured: null });
         else engine.pointOut(null);
       },

@@ -35,7 +35,16 @@ function isLookedAround({ camera: a }, { camera: b }) {
  */
 export function differences(before, after) {
   const found = isLookedAround(before, after) ? ['camera'] : [];
-  for (const key of /** @type {const} */ (['surface', 'formula', 'declared', 'centres', 'bounds', 'plane', 'pulls'])) {
+  for (const key of /** @type {const} */ ([
+    'surface',
+    'formula',
+    'declared',
+    'centres',
+    'bounds',
+    'plane',
+    'pulls',
+    'lines',
+  ])) {
     if (JSON.stringify(before[key]) !== JSON.stringify(after[key])) found.push(key);
   }
   for (const key of /** @type {const} */ (['parameters', 'settings'])) {
@@ -97,8 +106,9 @@ export class History {
     const goesOn =
       what !== null &&
       what === this.#open &&
-      // A stroke of the brush is one change, however soon the next follows.
+      // A stroke of the brush and a marked edge are one change each, however soon the next follows.
       what !== 'settings.brush' &&
+      what !== 'lines' &&
       // A camera motion is one change, however long it takes; fitting the surface again is another.
       (what === 'camera'
         ? present?.camera.fit === moment.camera.fit

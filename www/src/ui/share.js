@@ -12,9 +12,10 @@ import { givenOf } from '../engine/given.js';
 export async function copyLink(engine, toast) {
   try {
     const url = await linkTo(engine);
-    if (engine.state.peek().surface === FILE_SURFACE) {
+    const { surface, lines } = engine.state.peek();
+    if (surface === FILE_SURFACE) {
       const { name, holds } = givenOf(engine.field.peek()) ?? { name: 'a file', holds: 'points' };
-      const held = `A link cannot hold the ${holds} of ${name}`;
+      const held = `A link cannot hold the ${holds} of ${name}${lines.length > 0 ? ' and the edges marked on it' : ''}`;
       const text = `${held}: it shows the standard surface with these settings. Send the file along.`;
       toast({ id: 'share-file', kind: 'info', text });
     }

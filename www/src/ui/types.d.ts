@@ -165,6 +165,8 @@ export type Pins = Signal<readonly Vec3[] | null>;
 export type BrushTimes = '0.25' | '0.5' | '2' | '4' | 'erase';
 /** The brush: whether it is taken, and its radius as a share of the diagonal of the box. */
 export type Brush = { on: Signal<boolean>; times: Signal<BrushTimes>; share: Signal<number> };
+/** Which of them the pointer in the picture is; `marking`: whether a press marks an edge of a mesh. */
+export type Hands = { pins: Pins; brush: Brush; marking: Signal<boolean> };
 export interface Scale {
   min: number;
   max: number;
@@ -228,6 +230,7 @@ export interface ShortcutTargets {
   motion: Motion;
   pins: Pins;
   brush: Brush;
+  marking: Signal<boolean>;
   print: () => void;
   /** a key that is pressed before it has loaded acts as soon as it has */
   timeline: Promise<Record<'toggle' | 'back' | 'forward' | 'first' | 'all', () => void> | null>;

@@ -4,7 +4,7 @@
  * @module
  */
 import { decode, encode } from '../share/codec.js';
-import { IN_FILE, mergeState } from '../share/state.js';
+import { IN_FILE, MARKED, mergeState } from '../share/state.js';
 import { homeView } from '../share/view.js';
 import { description } from '../store.js';
 
@@ -19,6 +19,8 @@ const LARGEST_PICTURE_PX = 8192;
 /** What is told of a link to the surface of a file. */
 const OF_FILE =
   'The surface of this link is in a file, which a link cannot hold. Open the file here: the settings of the link are chosen already.';
+
+const MARK_AGAIN = ' Its edges are to be marked again.';
 
 /** @type {Partial<Record<MeshFormat, string>>} */
 const MIME = { glb: 'model/gltf-binary', '3mf': 'model/3mf', stl: 'model/stl' };
@@ -56,7 +58,7 @@ export function shareCommands({ store, columns, picture: { viewer }, sampler, lo
       } else if (reset.length) {
         const what = [...new Set(reset)].join(', ');
         store.notice.value = reset.includes(IN_FILE)
-          ? { id: 'link', kind: 'warn', text: OF_FILE, asks: 'file' }
+          ? { id: 'link', kind: 'warn', text: OF_FILE + (reset.includes(MARKED) ? MARK_AGAIN : ''), asks: 'file' }
           : { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
       }
       const whole = mergeState(state, { ...patch }, about, loader.hasFile).state;

@@ -5,7 +5,7 @@
  */
 
 import { batch } from '@preact/signals-core';
-import { FILE_SURFACE } from '../constants.js';
+import { FILE_SURFACE, MOST_LINE_POINTS } from '../constants.js';
 import { scanOf } from '../scans.js';
 import {
   freshShape,
@@ -17,6 +17,7 @@ import {
   surfaceOf,
   validBounds,
   validCentres,
+  validLines,
   validPlane,
   validSetting,
 } from '../share/state.js';
@@ -33,8 +34,8 @@ import { change, changeView, description, showAll } from '../store.js';
  */
 /**
  * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'chooseOfFile' | 'pull' | 'setPulls' |
- *   'declareParameter' | 'readNumber' | 'textFault' | 'section' | 'setBounds' | 'enlargement' | 'setPlane' | 'fitBox' |
- *   'setSetting' | 'resetSetting'>} InputCommands
+ *   'setLines' | 'meshFaces' | 'declareParameter' | 'readNumber' | 'textFault' | 'section' | 'setBounds' |
+ *   'enlargement' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
  */
 
 /**
@@ -51,8 +52,8 @@ export function replaces(old, text) {
 }
 
 /** The part of a state that is sampled, as a text for comparisons. @param {Shape} shape */
-const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pulls, settings }) =>
-  JSON.stringify([surface, formula, parameters, declared, centres, bounds, pulls, settings]);
+const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pulls, lines, settings }) =>
+  JSON.stringify([surface, formula, parameters, declared, centres, bounds, pulls, lines, settings]);
 
 /** @param {Parts} parts @returns {SurfaceCommands} */
 export function surfaceCommands({ store, sampler, loader, framing, picture: { viewer } }) {
@@ -199,6 +200,14 @@ export function inputCommands({ store, sampler, framing }) {
       else sampler.resample({ kind: 'move', pulled });
     },
     setPulls: (pulls, { live = false } = {}) => resample(live, { pulls: [...pulls] }),
+    setLines(lines) {
+      if (!validLines(lines, MOST_LINE_POINTS)) return;
+      // A mesh with sharp edges is no scan, which alone can be smoothed.
+      const { smooth: _, ...parameters } = state.value.parameters;
+      change(store, { parameters, lines: [...lines] });
+      sampler.resample();
+    },
+    meshFaces: () => sampler.client.meshFaces(),
     declareParameter(name) {
       const { declared } = state.value;
       if (declared.some((p) => p.name === name)) return;

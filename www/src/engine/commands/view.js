@@ -56,8 +56,8 @@ export function viewCommands({ store, picture }) {
     pick: (x, y) => viewer.pick(x, y),
     project: (place) => viewer.project(place),
     rayThrough: (x, y) => viewer.rayThrough(x, y),
-    takeWith(take) {
-      picture.hand.take = take;
+    takeWith(take, notices) {
+      Object.assign(picture.hand, { take, notices });
     },
     dismissNotice() {
       store.notice.value = null;

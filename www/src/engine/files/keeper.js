@@ -82,7 +82,7 @@ export class FileKeeper {
 
   /**
    * Whether the field of a file can be set now. If not, the file is opened or the field made, and `whenReady` called.
-   * @param {Core} core @param {KeyedFile} file @param {Partial<FieldRequest>} request
+   * @param {Core} core @param {KeyedFile} file @param {FieldRequest} request
    * @param {{tell?: (fraction: number) => void, whenReady: (error?: unknown) => void}} told
    */
   isReady(core, file, request, { tell = () => {}, whenReady }) {
@@ -94,6 +94,9 @@ export class FileKeeper {
     const name = `${file.key} ${JSON.stringify(request)}`;
     if (this.#field.name !== name) {
       this.#field = { name, isMade: false };
+      const { lines = [] } = request;
+      if (file.as === 'mesh')
+        core.mark_edges(lines.flatMap((line) => line.slice(1).flatMap((to, k) => [...line[k], ...to])));
       const made = this.#make(core, request, { ...this.#env, tell });
       if (!this.#field.isMade) made.then(() => whenReady(), whenReady);
     }
@@ -102,7 +105,7 @@ export class FileKeeper {
 
   /**
    * Makes a field in slices, unless another one is wanted before the end. A field that takes one slice is made at once.
-   * @param {Core} core @param {Partial<FieldRequest>} request @param {MakeEnv} env
+   * @param {Core} core @param {FieldRequest} request @param {MakeEnv} env
    */
   async #make(core, request, { nowMs, pause, tell }) {
     const field = this.#field;
@@ -117,7 +120,7 @@ export class FileKeeper {
     await inSlices(slice, { nowMs, pause, interrupt }, { first: FIRST_SLICES, targetMs: MAKE_MS });
   }
 
-  /** @param {Core} core @param {KeyedFile} file @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
+  /** @param {Core} core @param {KeyedFile} file @param {FieldRequest} request @returns {FieldAnswer} */
   setField(core, file, request) {
     this.#field = { name: '', isMade: false };
     return this.#key === file.key ? core.set_opened(request) : refusalOf(this.#refused);

@@ -13,7 +13,7 @@ import { Requests } from '../bundle/requests.js';
 /**
  * @import { Timer } from '../bundle/types.js'
  * @import { KeyedFile, Opened } from '../files/types.js'
- * @import { FileRequest, Language } from '../types.js'
+ * @import { FileRequest, Language, MeshFaces } from '../types.js'
  * @import { ClientOptions, Clock, Crash, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
 
@@ -168,6 +168,12 @@ export class SamplingClient {
   section(place, size) {
     if (!this.isThere) return Promise.resolve(null);
     return this.#texts.make((request) => this.post({ type: 'section', request, place, size })).catch(() => null);
+  }
+
+  /** Returns the mesh of the open file; null if there is none. @returns {Promise<MeshFaces | null>} */
+  meshFaces() {
+    if (!this.isThere) return Promise.resolve(null);
+    return this.#texts.make((request) => this.post({ type: 'faces', request })).catch(() => null);
   }
 
   /**
@@ -348,6 +354,8 @@ export class SamplingClient {
         return this.#texts.answer(message.request, message.fault);
       case 'section':
         return this.#texts.answer(message.request, message.values);
+      case 'faces':
+        return this.#texts.answer(message.request, message.mesh);
       case 'open_progress':
         return this.#onOpening(message.label, message.fraction);
       case 'opened':

@@ -21,6 +21,7 @@ import type {
   Language,
   Measures,
   MeshChange,
+  MeshFaces,
   Report,
   SampleKind,
   Seconds,
@@ -73,6 +74,7 @@ export type ToWorker =
   | { type: 'fault'; request: number; what: 'thickness' | 'spacing'; text: string }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
   | { type: 'section'; request: number; place: number[]; size: [number, number] }
+  | { type: 'faces'; request: number }
   | { type: 'open'; request: number; file: KeyedFile }
   | { type: 'open_stop' }
   | { type: 'stop' }
@@ -140,6 +142,7 @@ export type FromWorker =
   | ReportMessage
   | { type: 'file'; request: number; bytes: Uint8Array<ArrayBuffer> | null }
   | { type: 'section'; request: number; values: Float32Array | null }
+  | { type: 'faces'; request: number; mesh: MeshFaces | null }
   | { type: 'opening' }
   | { type: 'making'; id: number; fraction: number }
   | { type: 'open_progress'; request: number; label: string; fraction: number }

@@ -230,6 +230,12 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       post({ type: 'section', request: data.request, values: values?.length ? values : null });
       break;
     }
+    case 'faces': {
+      const [vertices, faces] = [core?.mesh_vertices(), core?.mesh_faces()];
+      const mesh = vertices?.length && faces ? { vertices, faces } : null;
+      post({ type: 'faces', request: data.request, mesh }, mesh ? [mesh.vertices.buffer, mesh.faces.buffer] : []);
+      break;
+    }
     case 'open':
       void open(data);
       break;

@@ -41,6 +41,7 @@ export function difference(state, description) {
   if (state.bounds) out.bounds = state.bounds;
   if (state.plane) out.plane = { normal: state.plane.normal.map((v) => short(v)), offset: short(state.plane.offset) };
   if (state.pulls.length) out.pulls = state.pulls;
+  if (state.lines.length) out.lines = state.lines;
   const defaults = completeSettings(description, {});
   const settings = Object.fromEntries(
     Object.entries(state.settings).filter(([name, value]) => value !== defaults[name]),

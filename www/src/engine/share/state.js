@@ -5,7 +5,7 @@
  */
 
 import { readDabs } from '../brush.js';
-import { FILE_SURFACE, MODEL, MOST_PARAMETERS, MOST_PULLS } from '../constants.js';
+import { FILE_SURFACE, MODEL, MOST_LINE_POINTS, MOST_PARAMETERS, MOST_PULLS } from '../constants.js';
 import { LONGEST_PULL } from '../pulls.js';
 import { scanOf } from '../scans.js';
 import { size, vec } from '../vector.js';
@@ -14,13 +14,15 @@ import { homeView, validView } from './view.js';
 
 /**
  * @import {
- *   Bounds, ChosenBounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Pull, Settings, State, Shape,
- *   SurfaceInfo,
+ *   Bounds, ChosenBounds, CuttingPlane, Description, FieldRequest, Limits, Line, Parameter, Pull, Settings, State,
+ *   Shape, SurfaceInfo,
  * } from '../types.js'
  */
 
 /** What a link does not hold: the surface of a file. */
 export const IN_FILE = 'the surface, which is in a file';
+/** What is lost with it. */
+export const MARKED = 'the edges marked on it';
 
 /** Largest number in a plane, since the graphics card uses single precision. */
 const LARGEST_SINGLE = 3e38;
@@ -36,6 +38,7 @@ export const emptyState = () => ({
   bounds: null,
   plane: null,
   pulls: [],
+  lines: [],
   settings: {},
   view: homeView(),
 });
@@ -144,6 +147,7 @@ export function fieldRequest(state, description, points) {
   if (points !== undefined) {
     request.points = points;
     if (state.pulls.length) request.pulls = state.pulls;
+    if (state.lines.length) request.lines = state.lines;
     // A model alone needs no formula.
     if (state.formula.trim() === MODEL) {
       // Choices for an image are parameters.
@@ -191,6 +195,13 @@ export function validPull(v) {
 function validPulls(v, most) {
   const pulls = Array.isArray(v) && v.length <= most ? v.map(validPull) : [undefined];
   return pulls.every((pull) => pull !== undefined) ? pulls : undefined;
+}
+
+/** Lines of two points or more, with up to this many together. @param {unknown} v @param {number} most */
+export function validLines(v, most) {
+  const lines = Array.isArray(v) ? v.map((line) => (Array.isArray(line) ? line.map(vec3) : [])) : [[]];
+  const isLine = (/** @type {unknown[]} */ line) => line.length > 1 && line.every(Boolean);
+  return lines.every(isLine) && lines.flat().length <= most ? /** @type {Line[]} */ (lines) : undefined;
 }
 
 /**
@@ -263,7 +274,8 @@ export function sanitize(raw, description, hasFile = false) {
     // surface.
     const { camera: _, ...view } = isRecord(raw.view) ? raw.view : {};
     const rest = sanitize({ settings: raw.settings, view }, description);
-    return { state: rest.state, reset: [IN_FILE, ...rest.reset] };
+    const marked = Array.isArray(raw.lines) && raw.lines.length > 0 ? [MARKED] : [];
+    return { state: rest.state, reset: [IN_FILE, ...marked, ...rest.reset] };
   }
 
   const id = typeof raw.surface === 'string' ? raw.surface : '';
@@ -318,6 +330,8 @@ export function sanitize(raw, description, hasFile = false) {
   state.bounds = optional(raw.bounds, (v) => validBounds(v, description.limits), 'clip box');
   state.plane = optional(raw.plane, validPlane, 'cutting plane');
   state.pulls = optional(raw.pulls, (v) => validPulls(v, points ? MOST_PULLS : 0), 'pulls') ?? [];
+  const mostPoints = id === FILE_SURFACE ? MOST_LINE_POINTS : 0;
+  state.lines = optional(raw.lines, (v) => validLines(v, mostPoints), 'marked edges') ?? [];
   if (raw.settings !== undefined) {
     if (isRecord(raw.settings)) {
       for (const [name, value] of Object.entries(raw.settings)) {

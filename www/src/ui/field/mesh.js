@@ -3,16 +3,17 @@
  * and the distance of the new mesh from the old one.
  */
 import { computed } from '@preact/signals-core';
-import { term } from '../button.js';
+import { button, term } from '../button.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
+import { plural } from '../format.js';
 import { createSegmented } from '../segmented.js';
 import { createWarning } from '../warning.js';
 import { changeOf, facesOf, madeOf, mendedOf } from './mesh-words.js';
 import { createTaken } from './taken.js';
 import { createWayBack } from './way-back.js';
 
-/** @import { Description, Engine, MeshInfo, ReadonlySignal } from '../../engine/types.js' */
+/** @import { Description, Engine, MeshInfo, ReadonlySignal, Signal } from '../../engine/types.js' */
 
 /** Angle of edges that is preset, in degrees. */
 const USUAL_ANGLE = 30;
@@ -20,8 +21,9 @@ const USUAL_ANGLE = 30;
 /**
  * @param {Engine} engine
  * @param {Description} description
+ * @param {Signal<boolean>} marking
  */
-export function createMesh(engine, description) {
+export function createMesh(engine, description, marking) {
   const info = computed(() => engine.field.value?.mesh ?? null);
   const notes = computed(() => info.value?.notes ?? []);
   const change = computed(() => (info.value ? engine.change.value : null));
@@ -34,6 +36,7 @@ export function createMesh(engine, description) {
     h('p', { class: 'quiet' }, () => info.value && facesOf(info.value)),
     h('p', { class: 'quiet', hidden: () => !info.value?.mended.length }, () => info.value && mendedOf(info.value)),
     createEdges(engine),
+    createMarking(engine, marking),
     createBorders(engine, info),
     h('p', { class: 'quiet' }, () => info.value && madeOf(info.value)),
     h(
@@ -76,6 +79,39 @@ function createEdges(engine) {
     text: 'Auto keeps edges of 30° and more where they form curves, unless holes are closed. By angle keeps those whose faces meet at this angle or more. None takes the mesh for a scan and rounds all edges.',
   }));
   return h('div', { class: 'chosen' }, h('span', { class: 'name' }, 'Sharp edges'), choice);
+}
+
+/**
+ * Creates the button that takes the pointer to mark edges, and what is marked.
+ * @param {Engine} engine @param {Signal<boolean>} marking
+ */
+function createMarking(engine, marking) {
+  const count = computed(() => engine.state.value.lines.reduce((sum, line) => sum + line.length - 1, 0));
+  const mark = button(
+    {
+      class: 'small',
+      'aria-pressed': () => String(marking.value),
+      off: () => engine.field.value?.formula !== '',
+      press: () => {
+        marking.value = !marking.peek();
+      },
+    },
+    'Mark edges',
+  );
+  const text = () =>
+    engine.field.value?.formula === ''
+      ? 'Press edges of the mesh in the picture to keep them sharp, whatever their angle.'
+      : 'The mesh is part of a formula. Edges can be marked while it is alone.';
+  const clear = button(
+    { class: 'plain small', hidden: () => marking.value || count.value === 0, press: () => engine.setLines([]) },
+    () => `Unmark ${plural(count.value, 'edge')}`,
+  );
+  return h(
+    'div',
+    { class: 'chosen' },
+    explain(mark, () => ({ text: text() })),
+    clear,
+  );
 }
 
 /**

@@ -1,28 +1,27 @@
 /** The field panel: the formula, its parameters, the gallery, the clip box and the cutting plane. */
 import { computed } from '@preact/signals-core';
-import { fill, h, live } from '../dom.js';
+import { fill, h, live, release } from '../dom.js';
 import { createClipBox } from './clip-box.js';
 import { createCuttingPlane } from './cutting-plane.js';
 import { createFormula } from './formula.js';
 import { createGallery } from './gallery.js';
 import { createImage } from './image.js';
 import { createLoading } from './loading.js';
-import { createMesh } from './mesh.js';
 import { createModel } from './model.js';
 import { createParameters } from './parameters.js';
 import { createSolid } from './solid.js';
 import { storyOf } from './story.js';
 
 /**
- * @import { Description, Engine } from '../../engine/types.js'
- * @import { Motion, Pins, Print, Replace } from '../types.js'
+ * @import { Description, Engine, Signal } from '../../engine/types.js'
+ * @import { Hands, Motion, Print, Replace } from '../types.js'
  */
 
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {Description} description
- * @param {{ motion: Motion, pins: Pins, replace: Replace, print: Print }} shared
+ * @param {Pick<Hands, 'pins' | 'marking'> & { motion: Motion, replace: Replace, print: Print }} shared
  */
 export function mountField(body, engine, description, shared) {
   fill(
@@ -33,7 +32,7 @@ export function mountField(body, engine, description, shared) {
       createFormula(engine, description, shared.replace),
       createModel(engine, description),
       createImage(engine, description),
-      createMesh(engine, description),
+      createMeshLater(engine, description, shared.marking),
       createParameters(engine, shared),
     ),
     createGallery(engine, description, shared.replace),
@@ -46,6 +45,26 @@ export function mountField(body, engine, description, shared) {
   // What follows the sliders appears together with them, so that nothing jumps.
   const waits = () => [engine.field, engine.fieldError, engine.notice, engine.loading].every((own) => !own.value);
   live(body, () => body.classList.toggle('waiting', waits()));
+}
+
+/**
+ * Returns the place of the section for a triangle mesh, which is loaded with the first of them.
+ * @param {Engine} engine @param {Description} description @param {Signal<boolean>} marking
+ */
+function createMeshLater(engine, description, marking) {
+  const place = h('div', { hidden: true });
+  const isMesh = computed(() => Boolean(engine.field.value?.mesh));
+  live(place, () => {
+    if (!isMesh.value) return;
+    import('./mesh.js').then(
+      ({ createMesh }) => {
+        if (place.isConnected) place.replaceWith(createMesh(engine, description, marking));
+        release(place);
+      },
+      () => {},
+    );
+  });
+  return place;
 }
 
 /**

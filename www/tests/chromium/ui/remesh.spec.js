@@ -80,6 +80,156 @@ test('a mesh is sampled anew with its edges, or as points, and says what has bec
   await clean();
 });
 
+/** A block without the rim of its top: sides that lean in by 20° from 0.75 up to 1. */
+const LEAN = 0.25 / Math.tan((20 * Math.PI) / 180);
+function chamfered() {
+  const ring = (/** @type {number} */ half, /** @type {number} */ z) =>
+    [0, 1, 2, 3].map((k) => [k & 1 ? half : -half, k & 2 ? half : -half, z].join(' '));
+  const corners = [...ring(2, 0), ...ring(2, 0.75), ...ring(2 - LEAN, 1)];
+  const walls = [0, 4].flatMap((at) =>
+    [
+      [0, 1],
+      [1, 3],
+      [3, 2],
+      [2, 0],
+    ].map(([a, b]) => `4 ${at + a} ${at + b} ${at + 4 + b} ${at + 4 + a}`),
+  );
+  return Buffer.from(['OFF', '12 10 0', ...corners, '4 0 2 3 1', '4 8 9 11 10', ...walls, ''].join('\n'));
+}
+
+/** Where a place of the surface is in the window. @param {Page} page @param {number[]} place */
+const windowOf = (page, place) =>
+  page.evaluate((place) => {
+    const host = document.querySelector('#canvas-host')?.getBoundingClientRect() ?? new DOMRect();
+    const { x, y } = /** @type {any} */ (window).marchingParticles.engine.project(place);
+    return { x: host.left + x, y: host.top + y };
+  }, place);
+
+/** @param {Page} page */
+const lookFromAbove = (page) =>
+  page.evaluate(async () => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    engine.lookFrom('top');
+    await engine.debug.still();
+  });
+
+test('edges are marked in the picture, by mouse and keys, undone, kept by other settings and copied', {
+  tag: '@all',
+}, async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  const { clean } = await open(page, { width: 1440, height: 900, hash: COARSE });
+  const panel = page.locator('.remesh');
+  const card = page.getByRole('group', { name: 'Mark edges' });
+  const marks = page.locator('.marks .kept');
+  const lines = async () => (await state(page)).lines.length;
+  await choose(page, 'block.off', chamfered());
+  await settled(page);
+  await lookFromAbove(page);
+  await panel.getByRole('button', { name: 'Mark edges' }).click();
+  await expect(card.getByRole('status')).toHaveText('Press an edge to keep it sharp');
+  const top = 2 - LEAN;
+  const rim = [
+    [top, 0, 1],
+    [-top, 0, 1],
+    [0, top, 1],
+    [0, -top, 1],
+  ];
+  const mitres = [0, 1, 2, 3].map((k) => [k & 1, k >> 1].map((side) => (2 * side - 1) * (2 - LEAN / 2)).concat(0.875));
+  const edges = [...rim.map((place) => ({ place, angle: 20 })), ...mitres.map((place) => ({ place, angle: 28 }))];
+
+  await test.step('the pointer shows the edge, a press marks it, and the rim of the block comes back', async () => {
+    await expect(panel).toContainText('6 patches between 12 sharp edges of the mesh and 8 corners');
+    for (const [k, { place, angle }] of edges.entries()) {
+      const at = await windowOf(page, place);
+      await page.mouse.move(at.x, at.y);
+      await expect(card.getByRole('status')).toHaveText(`1 edge, ${angle}°: not sharp yet`);
+      await expect(page.locator('.marks .hot')).toHaveCount(1);
+      await page.mouse.click(at.x, at.y);
+      await settled(page);
+      await expect(marks).toHaveCount(k + 1);
+    }
+    await expect(panel).toContainText('10 patches between 20 sharp edges of the mesh and 12 corners');
+    const { x, y } = await windowOf(page, [2, 0, 0.75]);
+    await page.mouse.move(x - 1, y);
+    await expect(card.getByRole('status')).toHaveText('1 edge, 70°: sharp by its angle');
+    expect((await scan(page)).violations).toEqual([]);
+  });
+
+  await test.step('one step back undoes a press, and other settings keep the marks', async () => {
+    await page.keyboard.press('Control+z');
+    await settled(page);
+    await expect(marks).toHaveCount(7);
+    await page.keyboard.press('Control+Shift+z');
+    await settled(page);
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setSetting('radius_share', 0.04));
+    await settled(page);
+    await expect(marks).toHaveCount(8);
+    await expect(panel).toContainText('20 sharp edges of the mesh and 12 corners');
+  });
+
+  await test.step('they are copied for the command line', async () => {
+    await card.getByRole('button', { name: 'Copy' }).click();
+    await expect(card.getByRole('status')).toHaveText('Options copied');
+    const copied = await page.evaluate(() => navigator.clipboard.readText());
+    expect(copied).toMatch(/^(--mesh-line "(-?[\d.]+,-?[\d.]+,(1|0.75) ?){2}" ?){8}$/);
+  });
+
+  await test.step('a drag turns the surface, and by keys the edge in the middle is meant', async () => {
+    const { x, y } = await windowOf(page, rim[0]);
+    const { yaw } = (await state(page)).view.camera;
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y, { steps: 4 });
+    await page.mouse.up();
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.debug.still());
+    expect((await state(page)).view.camera.yaw).not.toBe(yaw);
+    await expect(marks).toHaveCount(8);
+    await page.evaluate(async (target) => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      engine.setView({ camera: { ...engine.state.value.view.camera, target, fit: false } });
+      await engine.debug.still();
+    }, rim[1]);
+    await page.mouse.move(5, 5);
+    await page.locator('#canvas-host').focus();
+    await page.keyboard.press('Shift+Tab');
+    await page.keyboard.press('Tab');
+    await expect(card.getByRole('status')).toHaveText('1 edge, 20°: marked');
+    await page.keyboard.press('Enter');
+    await settled(page);
+    await expect(marks).toHaveCount(7);
+  });
+
+  await test.step('Escape leaves, and the panel takes all marks off', async () => {
+    await page.keyboard.press('Escape');
+    await expect(card).toBeHidden();
+    await panel.getByRole('button', { name: 'Unmark 7 edges' }).click();
+    await settled(page);
+    expect(await lines()).toBe(0);
+  });
+  await clean();
+});
+
+test('edges are marked by finger, and the link says that they need the file', async ({ browser }) => {
+  const page = await browser.newPage({ hasTouch: true, isMobile: true });
+  const { clean } = await open(page, { width: 390, height: 844, hash: COARSE });
+  await choose(page, 'block.off', chamfered());
+  await settled(page);
+  await lookFromAbove(page);
+  await page.locator('.remesh').getByRole('button', { name: 'Mark edges' }).tap();
+  const { x, y } = await windowOf(page, [2 - LEAN, 0, 1]);
+  // The mesh has to be there.
+  await expect(page.getByRole('group', { name: 'Mark edges' }).getByRole('status')).toHaveText(/^Press/);
+  await page.touchscreen.tap(x + 8, y);
+  await settled(page);
+  await expect(page.locator('.marks .kept')).toHaveCount(1);
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
+  await page.goto('about:blank');
+  await page.goto(`./?backend=canvas2d${new URL(link).hash}`);
+  await expect(page.locator('.toast')).toContainText('Its edges are to be marked again');
+  await clean();
+  await page.close();
+});
+
 test('a sheet ends at its border, and a link asks for the file', async ({ page }) => {
   const { clean } = await open(page, { width: 390, height: 844, hash: COARSE });
   await choose(page, 'open.off', offOf(5));

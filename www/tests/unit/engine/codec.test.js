@@ -1,11 +1,12 @@
 import { describe, expect, test } from 'vitest';
-import { FILE_SURFACE, MODEL } from '../../../src/engine/constants.js';
+import { FILE_SURFACE, MODEL, MOST_LINE_POINTS } from '../../../src/engine/constants.js';
 import { decode, encode, LONGEST_FRAGMENT } from '../../../src/engine/share/codec.js';
 import {
   clampSettings,
   defaultState,
   fieldRequest,
   IN_FILE,
+  MARKED,
   mergeState,
   namesModel,
   sanitize,
@@ -24,6 +25,7 @@ const elaborate = () => ({
   centres: null,
   bounds: { min: [-1, -2, -3], max: [1, 2, 3] },
   pulls: [],
+  lines: [],
   plane: { normal: [0, 0.6, -0.8], offset: 0.25 },
   settings: { radius_share: 0.012, relax_steps: 20 },
   view: {
@@ -85,6 +87,36 @@ describe('a link', () => {
     expect(of({ surface: FILE_SURFACE, centres: 500 })).toEqual([500, []]);
     expect(of({ surface: 'torus', centres: 120 })).toEqual([null, ['number of centres']]);
     expect(of({ surface: 'bunny', centres: 'many' })).toEqual([null, ['number of centres']]);
+  });
+
+  test('holds the marked edges of a file, of so many points, and says that without the file they are gone', async () => {
+    const line = (/** @type {number} */ points) => Array.from({ length: points }, (_, k) => [k, 0.5, 1 - k]);
+    const marked = { surface: FILE_SURFACE, lines: [line(2), line(3)] };
+    const of = (/** @type {unknown} */ raw, hasFile = true) => {
+      const { state, reset } = sanitize(raw, description, hasFile);
+      return [state.lines, reset];
+    };
+    expect(of(marked)).toEqual([marked.lines, []]);
+    const { state } = sanitize(marked, description, true);
+    expect((await decode(await encode(state, description), description, true)).state.lines).toEqual(marked.lines);
+    expect(fieldRequest(state, description, 'file 1').lines).toEqual(marked.lines);
+    expect(of(marked, false)).toEqual([[], [IN_FILE, MARKED]]);
+    expect(of({ ...marked, lines: [line(MOST_LINE_POINTS)] })[1]).toEqual([]);
+    const wrong = [
+      [line(1)],
+      [line(MOST_LINE_POINTS), line(2)],
+      [[[0, 1]]],
+      [7],
+      'many',
+      [
+        [
+          [0, 0, 0],
+          [1, 0, 'a'],
+        ],
+      ],
+    ];
+    for (const lines of wrong) expect(of({ ...marked, lines })).toEqual([[], ['marked edges']]);
+    expect(of({ surface: 'bunny', lines: [line(2)] })).toEqual([[], ['marked edges']]);
   });
 
   test('holds the pulls on a model, and none that would tear it', async () => {

@@ -326,7 +326,12 @@ export function fakeCore({
     space: () => null,
     add_value: () => null,
     value_names: () => [],
-    mark_edges() {},
+    /** @param {number[]} segments */
+    mark_edges(segments) {
+      calls.push(`mark_edges ${segments.join(' ')}`);
+    },
+    mesh_vertices: () => new Float64Array(),
+    mesh_faces: () => new Uint32Array(),
     added_value: () => new Float32Array(),
     plan() {},
     fraction: () => measured / slices,

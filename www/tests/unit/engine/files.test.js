@@ -11,6 +11,8 @@ import { barsOf, filteredOf, voxelsOf } from '../../../src/ui/field/image-words.
 import { changeOf, facesOf, madeOf, mendedOf } from '../../../src/ui/field/mesh-words.js';
 import { fakeCore } from './fake-core.js';
 
+/** @import { Line } from '../../../src/engine/types.js' */
+
 const ROOM = 1e9;
 /** Without a clock and with an immediate pause. */
 const TIME = { nowMs: () => 0, pause: () => Promise.resolve() };
@@ -113,6 +115,31 @@ describe('a file of a mesh', () => {
     const large = await openGiven(core, meshOf('a.stl'), { ...env, mostBytes: 10 });
     expect(large).toMatchObject({ ok: false, kind: 'mesh', message: expect.stringContaining('simplify it first') });
     expect(core.calls).toEqual([]);
+  });
+
+  test('has its marked edges before its field is made, and again none', async () => {
+    const core = coreOf(fakeCore());
+    const keeper = new FileKeeper(ROOM, TIME);
+    const file = { ...meshOf('a.stl'), key: 'a' };
+    await keeper.open(core, file);
+    core.calls.length = 0;
+    /** @type {Line} */
+    const line = [
+      [0, 0, 0],
+      [1, 0, 0],
+      [1, 2, 0],
+    ];
+    for (const request of [{ lines: [line] }, {}]) {
+      while (!keeper.isReady(core, file, request, { whenReady: () => {} })) await Promise.resolve();
+      keeper.setField(core, file, request);
+    }
+    const marks = core.calls.filter((/** @type {string} */ call) => !call.startsWith('make'));
+    expect(marks).toEqual([
+      'mark_edges 0 0 0 1 0 0 1 0 0 1 2 0',
+      expect.stringContaining('set_opened'),
+      'mark_edges ',
+      expect.stringContaining('set_opened'),
+    ]);
   });
 
   test('is told in words, and so is what has become of it', () => {

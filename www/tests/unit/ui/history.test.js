@@ -42,6 +42,18 @@ describe('the history', () => {
     expect(history.move(-1)?.parameters).toEqual({ a: 60 });
   });
 
+  it('takes every marked edge for one change, however soon the next follows', () => {
+    const history = new History();
+    /** @type {import('../../../src/engine/types.js').Line} */
+    const line = [
+      [0, 0, 0],
+      [1, 0, 0],
+    ];
+    for (const [k, lines] of [[], [line], [line, line]].entries()) history.record(shape({ lines }), k);
+    expect(history.move(-1)?.lines).toEqual([line]);
+    expect(history.move(-1)?.lines).toEqual([]);
+  });
+
   it('takes every stroke of the brush for one change, however soon the next follows', () => {
     const history = new History();
     for (const [k, brush] of ['', '0 0 0 1 2', '0 0 0 1 2;1 0 0 1 2'].entries())

@@ -3,6 +3,7 @@ import { axesMark, createScaleBar } from './axes.js';
 import { boxMark } from './box.js';
 import { brushMark, createBrushCard, createMiddle, Painter } from './brush.js';
 import { mountMarks } from './layer.js';
+import { createMarkCard, Marker, markMark } from './marking.js';
 import { createMeasureCard, measureMark } from './measure.js';
 import { createPinCard, pinMark } from './pins.js';
 import { planeMark } from './plane.js';
@@ -11,20 +12,24 @@ import { spotMark } from './spot.js';
 
 /**
  * @import { Engine } from '../../../engine/types.js'
- * @import { Brush, Pins } from '../../types.js'
+ * @import { Hands } from '../../types.js'
  */
 
 /**
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, host: HTMLElement, view: HTMLElement, pins: Pins, brush: Brush }} parts  `host` holds
- *   the picture and lies in `stage`; `view` is the part that no panel covers
+ * @param {{ stage: HTMLElement, host: HTMLElement, view: HTMLElement } & Hands} parts  `host` holds the picture and
+ *   lies in `stage`; `view` is the part that no panel covers
  */
-export function mountAllMarks(engine, { stage, host, view, pins, brush }) {
+export function mountAllMarks(engine, { stage, host, view, pins, brush, marking }) {
   const painter = new Painter(engine, brush);
   const middle = createMiddle(painter);
   const painted = brushMark(engine, { stage, host, brush, pins, painter, middle });
   const pinned = pinMark(engine, stage, pins);
-  engine.takeWith((at, shift) => painter.take(at) ?? pinned.take?.(at, shift) ?? null);
+  const marker = new Marker(engine, marking);
+  engine.takeWith(
+    (at, shift) => painter.take(at) ?? pinned.take?.(at, shift) ?? null,
+    (at, tapped) => marker.notices(at, tapped),
+  );
   mountMarks(stage, engine, [
     sliceMark(engine),
     axesMark(engine),
@@ -33,6 +38,7 @@ export function mountAllMarks(engine, { stage, host, view, pins, brush }) {
     measureMark(engine, host),
     pinned,
     painted,
+    markMark(engine, { stage, host, marker, pins, brush }),
     spotMark(engine),
   ]);
   view.append(
@@ -40,5 +46,6 @@ export function mountAllMarks(engine, { stage, host, view, pins, brush }) {
     createMeasureCard(engine),
     createPinCard(engine, pins),
     createBrushCard(brush, painter, middle),
+    createMarkCard(engine, marker),
   );
 }
