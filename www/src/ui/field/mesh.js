@@ -103,7 +103,7 @@ function createMarking(engine, marking) {
       ? 'Press edges of the mesh in the picture to keep them sharp, whatever their angle.'
       : 'The mesh is part of a formula. Edges can be marked while it is alone.';
   const clear = button(
-    { class: 'plain small', hidden: () => marking.value || count.value === 0, press: () => engine.setLines([]) },
+    { class: 'plain small', hidden: () => count.value === 0, press: () => engine.setLines([]) },
     () => `Unmark ${plural(count.value, 'edge')}`,
   );
   return h(

@@ -2,7 +2,7 @@
 import { describe, expect, test } from 'vitest';
 import { MeshEdges } from '../../../src/ui/view/marks/mesh-edges.js';
 
-/** @import { Ray, Vec3 } from '../../../src/engine/types.js' */
+/** @import { Line, Ray, Vec3 } from '../../../src/engine/types.js' */
 
 /** @param {number[][]} vertices @param {number[][]} faces */
 const meshOf = (vertices, faces) =>
@@ -67,7 +67,7 @@ describe('edges of a mesh', () => {
     expect(mesh.count).toBe(18);
     const edges = Array.from({ length: mesh.count }, (_, edge) => edge).filter((edge) => mesh.isEdge(edge));
     expect(edges).toHaveLength(12);
-    for (const edge of edges) expect(degrees(mesh.angles[edge])).toBeCloseTo(90, 9);
+    for (const edge of edges) expect(degrees(mesh.angleAt(edge))).toBeCloseTo(90, 9);
   });
 
   test('are concave where the faces turn inwards, and have no angle at a border or between three faces', () => {
@@ -82,19 +82,12 @@ describe('edges of a mesh', () => {
       [0, 2, 1],
       [0, 1, 3],
     ];
-    const angleOf = (/** @type {MeshEdges} */ mesh) =>
-      degrees(
-        mesh.angles[
-          [
-            ...mesh.edgesOf([
-              [
-                [0, 0, 0],
-                [0, 1, 0],
-              ],
-            ]),
-          ][0]
-        ],
-      );
+    /** @type {Line} */
+    const ridge = [
+      [0, 0, 0],
+      [0, 1, 0],
+    ];
+    const angleOf = (/** @type {MeshEdges} */ mesh) => degrees(mesh.angleAt([...mesh.edgesOf([ridge])][0]));
     expect(angleOf(meshOf(roof, faces))).toBeCloseTo(90, 9);
     expect(
       angleOf(
@@ -150,7 +143,7 @@ describe('edges of a mesh', () => {
     const project = (/** @type {Vec3} */ [x, y]) => ({ x: 100 * x, y: -100 * y });
     const meant = (/** @type {number} */ x, /** @type {number} */ y) => {
       const edge = mesh.edgeNear(0, project([x, y, 0]), { most: 12, eye: [x, y, 9], project });
-      return edge === null ? null : Math.round(degrees(mesh.angles[edge]));
+      return edge === null ? null : Math.round(degrees(mesh.angleAt(edge)));
     };
     expect(meant(-0.08, -0.02)).toBe(90);
     expect(meant(-0.5, -0.02)).toBe(5);
@@ -161,7 +154,7 @@ describe('edges of a mesh', () => {
     const mesh = tower();
     const rim = between(mesh, 1, 1);
     expect(rim).toHaveLength(SIDES);
-    for (const edge of rim) expect(degrees(mesh.angles[edge])).toBeCloseTo(20, 9);
+    for (const edge of rim) expect(degrees(mesh.angleAt(edge))).toBeCloseTo(20, 9);
     for (const edge of rim) expect(mesh.chainOf(edge)).toEqual(new Set(rim));
     // A cube, and a pyramid without its top, whose mitres go on from its edges at 45°.
     for (const block of [cube(), cube(0.5)])

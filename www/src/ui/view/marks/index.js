@@ -46,6 +46,6 @@ export function mountAllMarks(engine, { stage, host, view, pins, brush, marking 
     createMeasureCard(engine),
     createPinCard(engine, pins),
     createBrushCard(brush, painter, middle),
-    createMarkCard(engine, marker),
+    createMarkCard(marker),
   );
 }

@@ -64,7 +64,7 @@ export class Marker {
 
   /** Whether an edge stays sharp without a mark. @param {MeshEdges} mesh @param {number} edge */
   isKept(mesh, edge) {
-    return Math.abs(mesh.angles[edge]) * DEGREES > this.#angle.value + ROUNDING;
+    return Math.abs(mesh.angleAt(edge)) * DEGREES > this.#angle.value + ROUNDING;
   }
 
   /** Fetches the mesh. */
@@ -143,10 +143,13 @@ export class Marker {
     const { mesh, hot, said, meant, marked, extent } = this;
     if (!this.on.value) return '';
     if (said.value) return said.value;
+    // Such as that a mesh with holes has no sharp edges.
+    const { value: wrong } = this.#engine.fieldError;
+    if (wrong) return `${wrong.message.charAt(0).toUpperCase()}${wrong.message.slice(1)}`;
     if (!mesh.value) return 'Reading the mesh';
     const count = marked.value.size;
     if (hot.value === null) return count > 0 ? `${plural(count, 'edge')} marked` : 'Press an edge to keep it sharp';
-    const angle = `${formatFixed(Math.abs(mesh.value.angles[hot.value]) * DEGREES, 0)}°`;
+    const angle = `${formatFixed(Math.abs(mesh.value.angleAt(hot.value)) * DEGREES, 0)}°`;
     const what = extent.value === 'chain' ? `${plural(meant.value.size, 'edge')}, ${angle}` : `An edge, ${angle}`;
     if (marked.value.has(hot.value)) return `${what}: marked`;
     return this.isKept(mesh.value, hot.value) ? `${what}: sharp by its angle` : `${what}: not sharp yet`;
@@ -216,11 +219,8 @@ export function markMark(engine, { stage, host, marker, pins, brush }) {
   };
 }
 
-/**
- * Creates the card that says which edge is meant, and has the choices.
- * @param {Engine} engine @param {Marker} marker
- */
-export function createMarkCard(engine, marker) {
+/** Creates the card that says which edge is meant, and has the choices. @param {Marker} marker */
+export function createMarkCard(marker) {
   const { on, extent, marked, said } = marker;
   const none = () => marked.value.size === 0;
   const choice = createSegmented({
@@ -262,7 +262,6 @@ export function createMarkCard(engine, marker) {
       { class: 'brush-choice' },
       choice,
       explain(copy, () => ({ text })),
-      button({ class: 'small', off: none, press: () => engine.setLines([]) }, 'Clear'),
       button({ class: 'small', press: done }, 'Done'),
     ),
   );
