@@ -207,8 +207,8 @@ export function markMark(engine, { stage, host, marker, pins, brush }) {
       const edges = mesh.value;
       if (!edges) return;
       for (const [kind, some] of /** @type {const} */ ([
-        ['kept', marker.marked.value],
         ['hot', marker.meant.value],
+        ['kept', marker.marked.value],
       ]))
         for (const edge of some) {
           const [p, q] = edges.placesOf(edge).map((place) => engine.project(place));
