@@ -100,7 +100,7 @@ function createMarking(engine, marking) {
   );
   const text = () =>
     engine.field.value?.formula === ''
-      ? 'Press edges of the mesh in the picture to keep them sharp, whatever their angle.'
+      ? 'Press edges of the mesh in the picture to keep them sharp, whatever their angle. By keyboard, turn one under the cross and press Enter.'
       : 'The mesh is part of a formula. Edges can be marked while it is alone.';
   const clear = button(
     { class: 'plain small', hidden: () => count.value === 0, press: () => engine.setLines([]) },

@@ -96,16 +96,21 @@ export class Marker {
     if (middle) this.notices(middle, false);
   }
 
+  /** Returns what says of a place whether neither the cutting plane nor the box hides it. */
+  shows() {
+    const { plane } = this.#engine.state.peek();
+    const box = this.#engine.field.peek()?.bounds;
+    return (/** @type {Vec3} */ p) =>
+      !(plane && dot(plane.normal, p) > plane.offset) &&
+      (!box || p.every((v, k) => v >= box.min[k] && v <= box.max[k]));
+  }
+
   /** @param {Point} at */
   #edgeAt(at) {
     const [engine, mesh] = [this.#engine, this.mesh.peek()];
     if (!mesh) return null;
     const most = matchMedia('(pointer: coarse)').matches ? REACH_PX.coarse : REACH_PX.fine;
-    const { plane } = engine.state.peek();
-    const box = engine.field.peek()?.bounds;
-    const isShown = (/** @type {Vec3} */ p) =>
-      !(plane && dot(plane.normal, p) > plane.offset) &&
-      (!box || p.every((v, k) => v >= box.min[k] && v <= box.max[k]));
+    const isShown = this.shows();
     // Beside its outline the mesh is met a little farther inside.
     const steps = [
       [0, 0],
@@ -206,12 +211,15 @@ export function markMark(engine, { stage, host, marker, pins, brush }) {
     draw(pen) {
       const edges = mesh.value;
       if (!edges) return;
+      const isShown = marker.shows();
       for (const [kind, some] of /** @type {const} */ ([
         ['hot', marker.meant.value],
         ['kept', marker.marked.value],
       ]))
         for (const edge of some) {
-          const [p, q] = edges.placesOf(edge).map((place) => engine.project(place));
+          const ends = edges.placesOf(edge);
+          if (!ends.every(isShown)) continue;
+          const [p, q] = ends.map((place) => engine.project(place));
           if (p && q) pen.line(p, q, edges.isSeen(edge, engine.rayThrough(p.x, p.y).eye) ? kind : `${kind} behind`);
         }
       aim(pen);
