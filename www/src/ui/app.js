@@ -282,7 +282,7 @@ function shortcutsOf(engine, { history, motion, pins, brush, marking, print, tim
     {
       keys: ['Escape'],
       shown: 'Esc',
-        label: 'Stop; close a notice; leave Grab, the brush, measuring or marking',
+      label: 'Stop; close a notice; leave Grab, the brush, measuring or marking',
       act: () => {
         if (motion.stop()) return;
         if (pins.peek()) pins.value = null;
