@@ -291,7 +291,10 @@ export class Columns {
     Object.assign(this, Object.fromEntries(known.map((name) => [name, figures[name]])));
   }
 
-  /** Writes the colours that the surface has, by the names of their columns. @param {Record<string, Float32Array>} own */
+  /**
+   * Writes the colours that the surface has, by the names of their columns.
+   * @param {Record<string, Float32Array>} own
+   */
   writeOwn(own) {
     const known = Object.entries(own).filter(([, values]) => values.length === this.count);
     this.own = Object.fromEntries(known);
