@@ -21,7 +21,8 @@ export const mendedOf = ({ mended }) => (mended.length > 0 ? `Mended: ${mended.j
 /** Says what kind of object the mesh is treated as. @param {MeshInfo} info */
 export function madeOf({ part, scan, union }) {
   if (part) {
-    const faded = part.faded > 0 ? ` ${plural(part.faded, 'sharp edge')} that end within a patch will be rounded.` : '';
+    const ending = plural(part.faded, 'sharp edge that ends', 'sharp edges that end');
+    const faded = part.faded > 0 ? ` ${ending} within a patch will be rounded.` : '';
     const { patches, edges, corners, rim } = part;
     const smoothed = rim?.is_smoothed ? ', which zigzags and was smoothed' : '';
     const border = rim
