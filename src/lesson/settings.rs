@@ -4,7 +4,7 @@
 use super::prediction::predicted_angles;
 use crate::differential::Curvature;
 use crate::field::formula::Parameter;
-use crate::math::{Bounds, BoxError};
+use crate::math::{Bounds, BoxError, grouped};
 use crate::paper::{RadiusRule, Rules, sum_of_curvatures};
 use crate::sampler::{GapPolicy, LawKind, Sampling};
 use glam::DVec3;
@@ -336,8 +336,9 @@ pub enum LessonError {
     Adaptive,
     /// More particles than the limit are expected.
     #[error(
-        "about {expected} particles are to be expected, and the event log follows at most {limit}: \
-         choose radii {factor:.2} times as large"
+        "about {} particles are to be expected, and the event log follows at most {}: \
+         choose radii {factor:.2} times as large",
+        grouped(*expected as usize), grouped(*limit as usize)
     )]
     TooMany {
         /// Expected number of particles.

@@ -1,7 +1,7 @@
 //! Settings of a run, with the paper's values as defaults.
 
 use crate::field::FieldError;
-use crate::math::{Bounds, BoxError, place_text, shortest_text};
+use crate::math::{Bounds, BoxError, grouped, place_text, shortest_text};
 use core::fmt;
 use core::ops::RangeInclusive;
 use serde::de::{self, IgnoredAny, MapAccess, Unexpected, Visitor};
@@ -298,7 +298,10 @@ pub enum SettingsError {
     #[error(transparent)]
     Box(#[from] BoxError),
     /// The columns of that many particles do not fit into the memory.
-    #[error("there is not enough memory for about {particles} particles: choose fewer, or a larger radius")]
+    #[error(
+        "there is not enough memory for about {} particles: choose fewer, or a larger radius",
+        grouped(*particles as usize)
+    )]
     Memory {
         /// Expected number of particles.
         particles: u64,

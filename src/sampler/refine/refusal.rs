@@ -1,7 +1,7 @@
 //! Why a surface is not refined.
 
 use super::LEAST_PARTICLES;
-use crate::math::place_text;
+use crate::math::{grouped, place_text};
 use core::fmt;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
@@ -13,8 +13,8 @@ use serde::Serialize;
 pub enum Refusal {
     /// The survey predicts too few particles for a refinement.
     #[error(
-        "Not refined: that takes at least {} particles, and {expected} were expected.",
-        4 * LEAST_PARTICLES
+        "Not refined: that takes at least {} particles, and {} were expected.",
+        4 * LEAST_PARTICLES, grouped(*expected as usize)
     )]
     Few {
         /// Number of particles that the survey predicts.

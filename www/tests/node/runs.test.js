@@ -223,7 +223,9 @@ for (const [device, userAgent] of /** @type {const} */ ([
       p.engine.setSetting('count', n);
     };
     const isRefused = (/** @type {number} */ n) =>
-      until(p.engine.notice, (now) => now?.text.includes(`There is not enough memory for about ${n} particles`));
+      until(p.engine.notice, (now) =>
+        now?.text.includes(`There is not enough memory for about ${n.toLocaleString('en')} particles`),
+      );
     // 512 MB on a desk, 256 MB on a phone: about 1.4 and 0.7 million.
     count(1_000_000);
     if (device === 'desk') {
