@@ -1,7 +1,7 @@
 //! The fields that can be sampled: a formula, functions of Python, or a surface through points.
 
 use crate::errors;
-use marching_particles::field::{BatchField, BatchPiecewise, Combined, IntoField};
+use marching_particles::field::{BatchField, BatchPiecewise, Combined};
 use marching_particles::glam::DVec3;
 use marching_particles::image::{AxisOrder, ImageChoice, ImageError, VoxelType};
 use marching_particles::pointcloud::job::Job;

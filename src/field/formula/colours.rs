@@ -147,8 +147,8 @@ fn parts(
     let is_maker = word(tokens, head).is_some_and(|name| is_vector(name) || name == "rgb");
     let open = if is_maker { head + 1 } else { head };
     let (mut commas, mut brackets, mut is_one) = (Vec::new(), 0_i32, open < body.end && is_open(open));
-    for at in open..body.end {
-        match tokens[at].token {
+    for (at, spanned) in tokens.iter().enumerate().take(body.end).skip(open) {
+        match spanned.token {
             Token::Open(_) => brackets += 1,
             Token::Close(_) => brackets -= 1,
             Token::Comma if brackets == 1 => commas.push(at),
