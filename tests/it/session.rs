@@ -502,7 +502,7 @@ fn a_run_beyond_the_memory_is_refused_and_a_smaller_one_goes_on() {
     session.run.limit_memory(16 << 20);
     let large = settings!(size_mode: SizeMode::Count, count: 100_000; ..Settings::default());
     let error = session.start(&large).expect_err("100,000 particles and their report take 38 MB").to_string();
-    assert!(error.contains("about 100000 particles") && error.contains("choose fewer"), "{error}");
+    assert!(error.contains("about 100,000 particles") && error.contains("choose fewer"), "{error}");
     session.start(&settings!(count: 20_000; ..large)).expect("20,000 take 8 MB");
     while session.run.step(65_536).stop_reason.is_none() {}
     assert!(session.run.count().abs_diff(20_000) <= 600);
