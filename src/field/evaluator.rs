@@ -272,6 +272,21 @@ pub trait Bounded: Evaluator {
     /// Under the same conditions as [`Bounded::enclose`].
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]);
 
+    /// The number by which [`Bounded::enclose`] and [`Bounded::gives`] take f as a whole, with all
+    /// of its pieces, if f has edges and [`Bounded::pieces_in`] knows them; by default none.
+    fn edged(&mut self) -> Option<usize> {
+        None
+    }
+
+    /// Replaces `out` by the bounds of each smooth piece of f that may be zero in a box and give f
+    /// there, and then those of each in the middle of the box; returns whether these are all. Where
+    /// all pieces rise along a direction, f rises along it at each of its zeros in the box. Being
+    /// defined and continuous refers to f as a whole.
+    fn pieces_in(&mut self, bounds: &Bounds, out: &mut Vec<Enclosure>) -> bool {
+        let _ = (bounds, out);
+        false
+    }
+
     /// Number of parts in which the field names the [cells](Bounded::cells) of a factor where the
     /// search for components begins; 0, the default, if it begins with the box of the run. For
     /// fields that know where their surface is, such as an image with many voxels: a search that

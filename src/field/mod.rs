@@ -91,6 +91,23 @@ impl Enclosure {
         (self.value.middle(), DVec3::from_array(self.gradient.map(Interval::middle)))
     }
 
+    /// Intersects bounds over a box with the mean value forms around its middle, from those there
+    /// and those of the second derivatives over the box; `half` is half its size.
+    pub(crate) fn tighten(&mut self, middle: &Self, second: &Sym3<Interval>, half: DVec3) {
+        if !(self.defined && self.continuous) {
+            return;
+        }
+        let swing = |slope: &dyn Fn(usize) -> Interval| -> f64 {
+            (0..3).filter(|&k| half[k] > 0.0).map(|k| slope(k).magnitude() * half[k]).sum()
+        };
+        for axis in (0..3).filter(|_| self.smooth) {
+            let form = middle.gradient[axis].mean_value(swing(&|k| second.at(axis, k)));
+            self.gradient[axis] = self.gradient[axis].cut_to(form);
+        }
+        let form = middle.value.mean_value(swing(&|k| self.gradient[k]));
+        self.value = self.value.cut_to(form);
+    }
+
     /// The enclosure of a field that is defined nowhere in the box.
     pub const NOWHERE: Self = Self { value: Interval::NOTHING, may_vanish: false, ..Self::UNKNOWN };
 }

@@ -460,10 +460,12 @@ impl RunState<'_> {
             warnings.push(Warning::Open { edges, points, position, length, search, is_undefined });
         }
         // Sheets too near to be distinguished leave witnesses open, which is reported already. No
-        // model from points has bounds, which the row of the report says. How components of a moved
-        // surface were searched for is reported already, too.
+        // model from points has bounds, which the row of the report says; of its creases nothing is
+        // said. How components of a moved surface were searched for is reported already, too.
+        let has_bounds = !doubts.contains(&Doubt::NoBounds);
         let is_told = |doubt: &Doubt| match doubt {
-            Doubt::NoBounds | Doubt::Creases => false,
+            Doubt::NoBounds => false,
+            Doubt::Creases => has_bounds,
             Doubt::Witnesses { .. } => !is_unresolved,
             Doubt::Unfinished => !self.has_moved(),
             // A cell at a jump stays open at any radius and in any box.

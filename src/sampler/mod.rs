@@ -159,8 +159,9 @@ impl<'f> Sampler<'f> {
     #[must_use]
     pub fn doubts(&self) -> Vec<Doubt> {
         let mut doubts = self.cover.components.doubts(self.surface.survey.nearness, self.least_gap());
-        let has_creases = self.surface.creases.are_there() || self.surface.creases.bare.is_some();
-        doubts.extend(has_creases.then_some(Doubt::Creases));
+        let creases = &self.surface.creases;
+        let is_searched = creases.are_there() && !self.cover.components.proves_edges();
+        doubts.extend((is_searched || creases.bare.is_some()).then_some(Doubt::Creases));
         doubts
     }
 

@@ -35,6 +35,18 @@ enum Piece {
         centre: DVec3,
         radius: f64,
     },
+    /// Faces, edges and corners around a centre.
+    Cube {
+        centre: DVec3,
+        axes: [DVec3; 3],
+        half: f64,
+    },
+    /// What two balls that meet have together, or in common.
+    Balls {
+        centres: [DVec3; 2],
+        radius: f64,
+        is_union: bool,
+    },
 }
 
 impl Piece {
@@ -52,6 +64,16 @@ impl Piece {
             }
             Self::Sheet { height, depth, wave } => format!("(z-({height})-{depth}*sin({wave}*x))"),
             Self::Quartic { centre, radius } => format!("({}-({radius})^4)", powers(centre, 4)),
+            Self::Cube { centre: c, axes, half } => {
+                let side = |n: DVec3| {
+                    format!("abs(({})*(x-({}))+({})*(y-({}))+({})*(z-({})))", n.x, c.x, n.y, c.y, n.z, c.z)
+                };
+                format!("(max({})-{half})", axes.map(side).join(","))
+            }
+            Self::Balls { centres, radius, is_union } => {
+                let [a, b] = centres.map(|centre| format!("{}-({radius})^2", powers(centre, 2)));
+                format!("{}({a},{b})", if is_union { "min" } else { "max" })
+            }
         }
     }
 
@@ -71,6 +93,14 @@ impl Piece {
                 let q = p - centre;
                 let value = (q * q * q * q).element_sum() - radius.powi(4);
                 (value / (4.0 * (q * q * q).length())).abs()
+            }
+            Self::Cube { centre, axes, half } => {
+                let sides = axes.map(|axis| axis.dot(p - centre).abs() - half);
+                sides.into_iter().fold(f64::NEG_INFINITY, f64::max).abs()
+            }
+            Self::Balls { centres, radius, is_union } => {
+                let [a, b] = centres.map(|centre| (p - centre).length() - radius);
+                if is_union { a.min(b).abs() } else { a.max(b).abs() }
             }
         }
     }
@@ -359,6 +389,48 @@ fn of_nested_tori_and_flat_minima_none_is_missing_without_a_word() {
         if random.unit() < 0.5 {
             // In the hole of the torus, whose radius is at least 0.2.
             all.push(Piece::Quartic { centre, radius: random.length(0.3 * r, 0.12) });
+        }
+        all
+    });
+}
+
+/// Bodies with edges, from a tenth of a particle to many, and no two of them together.
+#[test]
+fn of_bodies_with_edges_none_is_missing_without_a_word() {
+    let join = |bodies: &[String]| {
+        bodies.iter().skip(1).fold(bodies[0].clone(), |all, body| format!("min({all}, {body})"))
+    };
+    family_of("bodies with edges", 0.97, (40, 0.0), join, |random, r| {
+        let mut placed: Vec<(DVec3, f64)> = Vec::new();
+        let mut all = Vec::new();
+        for _ in 0..random.count(2, 6) {
+            let (centre, reach) = (random.near_middle(0.7), random.length(0.1 * r, 6.0 * r).min(0.28));
+            let is_free =
+                placed.iter().all(|&(other, size)| (other - centre).length() > size + reach + 0.2 * r);
+            if !is_free {
+                continue;
+            }
+            placed.push((centre, reach));
+            let axis = random.direction();
+            let across = axis.any_orthonormal_vector();
+            all.push(match random.count(0, 2) {
+                0 => Piece::Cube {
+                    centre,
+                    axes: [axis, across, axis.cross(across)],
+                    half: reach / 3.0_f64.sqrt(),
+                },
+                1 => {
+                    let radius = random.between(0.55, 0.9) * reach;
+                    let offset = axis * (reach - radius);
+                    Piece::Balls { centres: [centre - offset, centre + offset], radius, is_union: true }
+                }
+                _ => {
+                    // The rim is as far from the centre as the body reaches.
+                    let offset = axis * (random.between(0.3, 1.0) * reach);
+                    let radius = libm::hypot(reach, offset.length());
+                    Piece::Balls { centres: [centre - offset, centre + offset], radius, is_union: false }
+                }
+            });
         }
         all
     });

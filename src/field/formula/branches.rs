@@ -16,8 +16,7 @@ use super::interval::{self, FactorProgram, Range};
 use super::operations::{Binary, Unary};
 use super::products::{by_signs, may_cross};
 use super::scalar;
-use crate::field::Enclosure;
-use crate::math::{Bounds, Interval};
+use crate::math::Bounds;
 use glam::DVec3;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -281,15 +280,15 @@ impl Base {
     }
 
     /// The node that `part` reduces to when its conditions take the values in `holds`. With it,
-    /// whether that combination is possible only in ties, and whether the root vanishes only in
-    /// ties.
+    /// whether that combination is possible only in ties, and, if the root vanishes only in ties,
+    /// the functions at [its edge](Branches::edges).
     fn specialised(
         &mut self,
         part: &BranchPart,
         holds: &[bool],
         values: &[f64],
         walk: &mut BranchWalk,
-    ) -> (Id, [bool; 2]) {
+    ) -> (Id, bool, Option<Vec<Id>>) {
         let (mut way, mut rest) = (Vec::new(), holds.iter());
         let mut next = |_| if rest.next() == Some(&true) { Holds::Always } else { Holds::Never };
         walk.begin(part, &self.graph);
@@ -325,9 +324,29 @@ impl Base {
         // √(u² + v²) vanishes where both do: on an edge of this part, if its conditions give the
         // sign of u or v.
         let squares = self.graph.squares(root);
-        let is_end = |u: &Id| holds_in(&ordered, &map, [zero, *u]) || holds_in(&ordered, &map, [*u, zero]);
-        let is_edge = squares.len() > 1 && squares.iter().any(is_end);
-        (root, [self.are_tied(ordered), is_edge])
+        let mut rising = Vec::new();
+        for &u in &squares {
+            if holds_in(&ordered, &map, [zero, u]) {
+                rising.push(u);
+            } else if holds_in(&ordered, &map, [u, zero]) {
+                rising.push(self.graph.neg(u));
+            }
+        }
+        let edge = (squares.len() > 1 && !rising.is_empty()).then(|| {
+            let (norm, is_falling) = match self.graph.node(root) {
+                Node::Unary(Unary::Neg, norm) => (norm, true),
+                _ => (root, false),
+            };
+            if rising.len() < squares.len() || !self.graph.is_norm(norm) {
+                return Vec::new();
+            }
+            if is_falling {
+                rising.iter_mut().for_each(|u| *u = self.graph.neg(*u));
+            }
+            rising
+        });
+        self.extend(values);
+        (root, self.are_tied(ordered), edge)
     }
 
     /// Pairs of nodes, the lesser first, as these conditions order them.
@@ -494,6 +513,12 @@ pub(super) struct Branches {
     /// The function that replaces f where factors of a product cross, since its gradient does not
     /// vanish there: the function of the graph.
     pub(super) split: Option<Arc<Compiled>>,
+    /// The parts that vanish only at an edge of theirs, by their index, with functions of one sign
+    /// there of which each is the norm, or its negative; empty if there are no such functions.
+    pub(super) edges: Vec<(usize, Vec<Id>)>,
+    /// Whether f is equal to the function of the graph only up to [steps and
+    /// ridges](super::steps).
+    pub(super) is_rewritten: bool,
     walk: BranchWalk,
     /// The roles for the previous parameters; the memory is reused.
     before: Vec<NodeRole>,
@@ -586,9 +611,17 @@ impl Branches {
             Ok(place) => return known[place].1,
             Err(place) => place,
         };
-        let (root, [is_tie, is_edge]) = self.base.specialised(&self.parts[of], holds, values, &mut self.walk);
+        let (root, is_tie, edge) = self.base.specialised(&self.parts[of], holds, values, &mut self.walk);
         self.base.has_ties |= is_tie;
-        let part = TakenPart { index: self.part(root), is_tie, has_zeros: !(is_tie || is_edge) };
+        let index = self.part(root);
+        let part = TakenPart { index, is_tie, has_zeros: !is_tie && edge.is_none() };
+        if let Some(edge) = edge.filter(|_| !is_tie) {
+            match self.edges.iter_mut().find(|known| known.0 == index) {
+                Some(known) if known.1 != edge => known.1.clear(),
+                Some(_) => {}
+                None => self.edges.push((index, edge)),
+            }
+        }
         self.parts[of].taken.insert(place, (holds.to_vec(), part));
         part
     }
@@ -662,11 +695,17 @@ impl Branches {
     /// The numbers of the branches that may have zeros of f in the box, ascending; none if more
     /// than [`MAX_LISTED`] combinations of conditions are possible there.
     pub(super) fn within(&mut self, values: &[f64], bounds: &Bounds) -> Option<Vec<u32>> {
+        self.met_in(values, bounds).map(|(numbers, _)| numbers)
+    }
+
+    /// The same, with the parts that are left out because they vanish only at their edge, where
+    /// other branches are zero, too.
+    pub(super) fn met_in(&mut self, values: &[f64], bounds: &Bounds) -> Option<(Vec<u32>, Vec<usize>)> {
         if self.parts.is_empty() {
-            return Some(vec![0]);
+            return Some((vec![0], Vec::new()));
         }
         self.number_first(values);
-        let (mut open, mut numbers, mut ways) = (vec![0], Vec::new(), 0);
+        let (mut open, mut numbers, mut edges, mut ways) = (vec![0], Vec::new(), Vec::new(), 0);
         while let Some(at) = open.pop() {
             let part = &self.parts[at];
             interval::bounds(&self.base.graph, &part.nodes, values, bounds, &mut self.ranges);
@@ -686,11 +725,17 @@ impl Branches {
             for BranchWalk { holds, .. } in found {
                 let part = self.taken(at, &holds, values);
                 open.extend(part.has_zeros.then_some(part.index));
+                edges.extend((!part.has_zeros && !part.is_tie).then_some(part.index));
             }
         }
         numbers.sort_unstable();
         numbers.dedup();
-        Some(numbers)
+        Some((numbers, edges))
+    }
+
+    /// The node of a branch.
+    pub(super) fn root_of(&self, number: u32) -> Id {
+        self.parts[self.numbered[number as usize]].root
     }
 
     /// Whether f includes limits.
@@ -726,33 +771,6 @@ impl Branches {
             part.compiled = Some(Arc::new(Compiled::from_graph(graph, root, values)));
         }
         part.compiled.clone()
-    }
-
-    /// Empties the enclosures of a factor of a branch over boxes where the branch has no zero of f.
-    pub(super) fn leave_out(&mut self, number: u32, values: &[f64], boxes: &[Bounds], out: &mut [Enclosure]) {
-        for (bounds, out) in boxes.iter().zip(out).filter(|(_, out)| out.may_vanish) {
-            if self.within(values, bounds).is_some_and(|within| !within.contains(&number)) {
-                *out = Enclosure::NOWHERE;
-            }
-        }
-    }
-
-    /// Empties the enclosures of f over boxes where only limits may vanish. Where the surface may
-    /// end, the gradient has no bounds: an end may face any direction.
-    pub(super) fn leave_out_limits(&mut self, values: &[f64], boxes: &[Bounds], out: &mut [Enclosure]) {
-        if !self.has_limits() {
-            return;
-        }
-        for (bounds, out) in boxes.iter().zip(out).filter(|(_, out)| out.may_vanish) {
-            let within = self.within(values, bounds);
-            let mut limits =
-                |within: &Vec<u32>| within.iter().filter(|&&number| self.is_limit(number, values)).count();
-            match within.as_ref().map(|within| (limits(within), within.len())) {
-                Some((0, _)) => {}
-                Some((limits, all)) if limits == all => *out = Enclosure::NOWHERE,
-                _ => out.gradient = [Interval::EVERYTHING; 3],
-            }
-        }
     }
 
     /// Recomputes everything that depends on the parameters alone. If other operations are choices

@@ -124,6 +124,14 @@ impl Compiled {
         })
     }
 
+    /// The program for the bounds of f itself, whatever its factors.
+    pub(super) fn whole(&self) -> interval::FactorProgram {
+        let mut graph = (*self.graph).clone();
+        let mut whole = interval::FactorProgram::of(&mut graph, self.root, self.gradient, self.root);
+        whole.set_parameters(&self.values);
+        whole
+    }
+
     /// f at `p` in double precision. `scratch` keeps the values of the nodes.
     pub(super) fn value(&self, p: DVec3, scratch: &mut Vec<f64>) -> f64 {
         self.graph.evaluate(&self.value_nodes, &self.values, p, scratch);

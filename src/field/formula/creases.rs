@@ -108,10 +108,13 @@ impl Branches {
                 return (cells, branches);
             }
         }
-        let mut branches = match steps::as_choices(f, values, bounds) {
+        let rewritten = steps::as_choices(f, values, bounds);
+        let is_rewritten = rewritten.is_some();
+        let mut branches = match rewritten {
             Some((graph, root)) => Self::of(&graph, root, &[], values),
             None => Self::new(f, values),
         };
+        branches.is_rewritten = is_rewritten;
         let cells = branches.take_creases(values, bounds, width).await;
         (cells, branches)
     }

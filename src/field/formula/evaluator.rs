@@ -2,6 +2,7 @@
 
 use super::branches::Branches;
 use super::compiled::Compiled;
+use super::graph::Id;
 use super::interval::{BoxRows, FactorProgram};
 use super::scalar::ABREAST;
 use super::{Formula, eval, scalar};
@@ -38,6 +39,10 @@ struct FormulaBounds {
     /// The factors of f; if the surface has creases, those of each branch; if choices keep sheets
     /// apart, those of each sheet.
     factors: Vec<Factor>,
+    /// f as a whole, if its branches meet in edges and bounds of them suffice for proofs.
+    whole: Option<Factor>,
+    /// Branches, and functions at the edges of some, whose bounds were asked for; by their nodes.
+    pieces: Vec<(Id, Factor)>,
     /// Boxes in the coordinates of the formula.
     boxes: Vec<Bounds>,
 }
@@ -58,6 +63,34 @@ struct Factor {
     program: FactorProgram,
     first: BoxRows,
     second: BoxRows,
+}
+
+impl Factor {
+    fn new(of: FactorOf, program: FactorProgram) -> Self {
+        Self { of, program, first: BoxRows::default(), second: BoxRows::default() }
+    }
+
+    /// Bounds over a box, with the mean value forms, and in its middle.
+    fn tight(&mut self, bounds: &Bounds) -> [Enclosure; 2] {
+        let Self { program, first, second, .. } = self;
+        let mut known = [Enclosure::UNKNOWN; 2];
+        program.first.enclose(first, &[*bounds, Bounds::point(bounds.middle())], &mut known);
+        let mut of_second = [Sym3::splat(Interval::EVERYTHING)];
+        if let Some(program) = &program.second {
+            program.enclose_second(second, &[*bounds], &mut of_second);
+        }
+        let [mut known, middle] = known;
+        known.tighten(&middle, &of_second[0], 0.5 * bounds.size());
+        [known, middle]
+    }
+}
+
+impl FormulaBounds {
+    /// The factor of this number; the number after the last is that of the whole.
+    fn factor(&mut self, number: usize) -> (&mut Factor, &mut Vec<Bounds>) {
+        let own = self.factors.get_mut(number).or(self.whole.as_mut());
+        (own.expect("a factor of the field"), &mut self.boxes)
+    }
 }
 
 impl<'a> FormulaEvaluator<'a> {
@@ -110,10 +143,15 @@ impl<'a> FormulaEvaluator<'a> {
                 let own = instead.as_ref().filter(|_| *is_branch).map_or(&formula.compiled, |branch| branch);
                 programs.extend(own.factors().iter().map(|program| (FactorOf::Whole, program.clone())));
             }
-            let factor =
-                |(of, program)| Factor { of, program, first: BoxRows::default(), second: BoxRows::default() };
-            let factors = programs.into_iter().map(factor).collect();
-            FormulaBounds { factors, boxes: Vec::new() }
+            // Where factors cross, no direction leads out of all of them; limits end the surface.
+            let is_edged = !*is_branch
+                && !branches.factors.is_empty()
+                && branches.products.is_empty()
+                && !branches.is_rewritten
+                && !branches.has_limits();
+            let whole = is_edged.then(|| Factor::new(FactorOf::Whole, formula.compiled.whole()));
+            let factors = programs.into_iter().map(|(of, program)| Factor::new(of, program)).collect();
+            FormulaBounds { factors, whole, pieces: Vec::new(), boxes: Vec::new() }
         })
     }
 }
@@ -287,8 +325,7 @@ impl Bounded for FormulaEvaluator<'_> {
 
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
         let (frame, formula, is_branch) = (self.frame, self.formula, self.is_branch);
-        let FormulaBounds { factors, boxes: moved } = self.bounds();
-        let Factor { of, program, first, .. } = &mut factors[factor];
+        let (Factor { of, program, first, .. }, moved) = self.bounds().factor(factor);
         let boxes = in_formula(frame, boxes, moved);
         program.first.enclose(first, boxes, out);
         let (mut branches, values) = (formula.branches.lock(), &formula.values);
@@ -302,7 +339,7 @@ impl Bounded for FormulaEvaluator<'_> {
     }
 
     fn gives(&mut self, factor: usize, p: DVec3) -> bool {
-        let of = self.bounds().factors[factor].of;
+        let of = self.bounds().factor(factor).0.of;
         let place = self.frame.place(p);
         self.on_branches(|branches, values| match of {
             FactorOf::Whole => true,
@@ -311,10 +348,62 @@ impl Bounded for FormulaEvaluator<'_> {
         })
     }
 
+    fn edged(&mut self) -> Option<usize> {
+        let bounds = self.bounds();
+        bounds.whole.as_ref().map(|_| bounds.factors.len())
+    }
+
+    fn pieces_in(&mut self, bounds: &Bounds, out: &mut Vec<Enclosure>) -> bool {
+        let (frame, formula) = (self.frame, self.formula);
+        let FormulaBounds { whole: Some(whole), pieces, boxes: moved, .. } = self.bounds() else {
+            return false;
+        };
+        out.clear();
+        let mut of_whole = [Enclosure::UNKNOWN];
+        let here = in_formula(frame, core::slice::from_ref(bounds), moved);
+        whole.program.first.enclose(&mut whole.first, here, &mut of_whole);
+        let [Enclosure { defined, continuous, may_vanish, .. }] = of_whole;
+        if !may_vanish {
+            return true;
+        }
+        let (mut branches, values) = (formula.branches.lock(), &formula.values);
+        let Some((numbers, edges)) = branches.met_in(values, &here[0]) else { return false };
+        let mut enclosed = |branches: &Branches, node: Id| {
+            let k = pieces.iter().position(|piece| piece.0 == node).unwrap_or_else(|| {
+                let program = branches.bounds_of(node, values);
+                pieces.push((node, Factor::new(FactorOf::Whole, program)));
+                pieces.len() - 1
+            });
+            let [mut piece, middle] = pieces[k].1.tight(&here[0]);
+            piece.defined &= defined;
+            piece.continuous &= continuous;
+            [piece, middle]
+        };
+        let may_vanish = |[piece, _]: &[Enclosure; 2]| piece.may_vanish && !piece.value.excludes_zero();
+        let mut found: Vec<[Enclosure; 2]> = Vec::new();
+        for number in numbers {
+            found.extend(Some(enclosed(&branches, branches.root_of(number))).filter(may_vanish));
+        }
+        for part in edges {
+            match branches.edge_in(part, values, &here[0]) {
+                None => {}
+                Some(functions) if functions.is_empty() => found.push([Enclosure::UNKNOWN; 2]),
+                Some(functions) => {
+                    // It vanishes where all of them do.
+                    let known: Vec<[Enclosure; 2]> =
+                        functions.into_iter().map(|node| enclosed(&branches, node)).collect();
+                    found.extend(known.iter().filter(|_| known.iter().all(may_vanish)));
+                }
+            }
+        }
+        out.extend([0, 1].into_iter().flat_map(|place| found.iter().map(move |piece| piece[place])));
+        frame.scale_bounds(out);
+        true
+    }
+
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
         let frame = self.frame;
-        let FormulaBounds { factors, boxes: moved } = self.bounds();
-        let Factor { program, second, .. } = &mut factors[factor];
+        let (Factor { program, second, .. }, moved) = self.bounds().factor(factor);
         match &program.second {
             Some(program) => program.enclose_second(second, in_formula(frame, boxes, moved), out),
             None => out[..boxes.len()].fill(Sym3::splat(Interval::EVERYTHING)),

@@ -252,6 +252,20 @@ impl Graph {
         squares
     }
 
+    /// Whether a node is the root of a sum of squares.
+    pub(super) fn is_norm(&self, id: Id) -> bool {
+        let Node::Unary(Unary::Sqrt, sum) = self.node(id) else { return false };
+        let mut open = vec![sum];
+        while let Some(id) = open.pop() {
+            match self.node(id) {
+                Node::Binary(Binary::Add, a, b) => open.extend([a, b]),
+                Node::Power(_, 2) => {}
+                _ => return false,
+            }
+        }
+        true
+    }
+
     /// The function of a surface and the function that limits it; none without limits.
     pub(super) fn limited(&self, root: Id) -> Option<[Id; 2]> {
         let Node::Binary(Binary::Max, f, limit) = self.node(root) else { return None };

@@ -71,6 +71,7 @@ mod operations;
 mod parse;
 mod patches;
 mod periods;
+mod pieces;
 mod polar;
 mod porosity;
 mod powers;

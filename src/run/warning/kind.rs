@@ -52,7 +52,7 @@ impl Warning {
             Self::LargerInside(_) => ("larger_inside", Note),
             Self::FileDiffers { .. } => ("file_differs", Caution),
             // Nothing is known to be missing, and the report's completeness says the same.
-            Self::Unproven { doubt: Doubt::Cells { .. }, .. } => ("unproven", Note),
+            Self::Unproven { doubt: Doubt::Cells { .. } | Doubt::Creases, .. } => ("unproven", Note),
             Self::Unproven { .. } => ("unproven", Caution),
             Self::Digits { .. } => ("digits", Caution),
             Self::Overflow => ("overflow", Caution),

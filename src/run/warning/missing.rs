@@ -44,7 +44,9 @@ pub(super) fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -
              may miss it.",
         ),
         Doubt::Creases => f.write_str(
-            "A small component may be missing. The creases of the surface were searched, not proven to be all.",
+            "A small component with an edge may be missing: a smaller box or radius may show it. Edges are searched for, not proven \
+             to be all, where sheets cross or touch, where a condition cuts the surface, at steps and folds of f, and on surfaces \
+             too intricate for the search.",
         ),
         Doubt::Unfinished => {
             f.write_str("A component may be missing, because the run was stopped during the search.")

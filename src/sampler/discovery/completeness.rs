@@ -58,8 +58,8 @@ pub struct Unsampled {
 pub enum Doubt {
     /// The field has no bounds to prove anything by.
     NoBounds,
-    /// The surface has creases, which are found by searching: the proof holds for components
-    /// without.
+    /// The surface has creases that were found by searching, as where sheets cross: the proof holds
+    /// for components without.
     Creases,
     /// The run ended before the search or the audit did.
     Unfinished,

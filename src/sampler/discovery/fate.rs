@@ -104,9 +104,7 @@ impl BoxBounds {
         field.enclose_second(factor, &self.boxes, &mut self.second[..n]);
         for k in 0..n {
             let middle = self.known[n + k];
-            if self.known[k].defined && self.known[k].continuous {
-                tighten(&mut self.known[k], &middle, &self.second[k], 0.5 * self.boxes[k].size());
-            }
+            self.known[k].tighten(&middle, &self.second[k], 0.5 * self.boxes[k].size());
         }
     }
 }
@@ -251,18 +249,4 @@ impl Judge {
             }
         }
     }
-}
-
-/// Intersects bounds over a box with the mean value forms around its middle; `half` is half its
-/// size.
-fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &Sym3<Interval>, half: DVec3) {
-    let swing = |slope: &dyn Fn(usize) -> Interval| -> f64 {
-        (0..3).filter(|&k| half[k] > 0.0).map(|k| slope(k).magnitude() * half[k]).sum()
-    };
-    for axis in (0..3).filter(|_| known.smooth) {
-        let form = middle.gradient[axis].mean_value(swing(&|k| second.at(axis, k)));
-        known.gradient[axis] = known.gradient[axis].cut_to(form);
-    }
-    let form = middle.value.mean_value(swing(&|k| known.gradient[k]));
-    known.value = known.value.cut_to(form);
 }

@@ -8,6 +8,7 @@
 pub(crate) mod audit;
 mod cell;
 pub(crate) mod completeness;
+mod creased;
 mod dips;
 mod fate;
 pub(crate) mod grid;

@@ -39,6 +39,10 @@
 //! but each factor has. So are the sheets that a minimum, a maximum or an absolute value keeps
 //! apart: each component is one of the zeros of the operand that gives f there.
 //!
+//! A surface with edges is searched as a whole, by [bounds of its pieces](super::creased). If that
+//! leaves a cell undecided, its patches are searched one by one, as the factors are: then each
+//! component without an edge has a witness.
+//!
 //! Around a point where f has no gradient no cell can be decided. A [box](super::singular) around
 //! it through whose boundary every component in it passes is left out of the search, as if it did
 //! not belong to the box; its faces and edges are strata of the rest.
@@ -59,6 +63,7 @@
 use crate::field::{Bounded, Enclosure, MARGIN};
 use crate::math::{Bounds, sort_by_key};
 use crate::sampler::discovery::cell::{Axes, CUT, Cell, is_inside, is_left_out, push_boundary};
+use crate::sampler::discovery::creased::Pieces;
 use crate::sampler::discovery::fate::{Fate, Judge};
 use crate::sampler::discovery::singular::{SAME, Singular, isolating_box, singular_point};
 use crate::slices::HEAVY;
@@ -147,6 +152,10 @@ pub(crate) struct Octree {
     search: FactorSearch,
     turns: Turns,
     judge: Judge,
+    /// The number of f as a whole, if it has edges and is searched instead of its factors.
+    pub(crate) edged: Option<usize>,
+    /// Number of singular points that were known before the search.
+    given: usize,
     /// Points where f and its gradient vanish; of curves of such points a selection.
     pub(crate) singular: Vec<Singular>,
     /// Witnesses, at least one on every component of the surface.
@@ -203,13 +212,14 @@ struct Turns {
 
 impl Octree {
     /// Begins the search on a new field.
-    pub(crate) fn begin(&mut self, has_bounds: bool, bounds: &Bounds) {
+    pub(crate) fn begin(&mut self, field: Option<&mut dyn Bounded>, bounds: &Bounds) {
         self.witnesses.clear();
         self.undecided.clear();
         self.singular.clear();
         let margin = MARGIN * bounds.size().max_element();
         self.region = Region { bounds: bounds.enlarged(margin), margin };
-        self.state = if has_bounds { SearchState::Ready } else { SearchState::Unavailable };
+        self.state = if field.is_some() { SearchState::Ready } else { SearchState::Unavailable };
+        self.edged = field.and_then(|field| field.edged());
     }
 
     /// The search of a factor of the field, which begins with the box, its faces and its edges, or
@@ -274,7 +284,9 @@ impl Octree {
 
     /// Number of cells that the search may visit in this turn.
     fn allowed(&self) -> usize {
-        let most = if self.search.is_ending { self.most.max(MOST_AT_THE_END) } else { self.most };
+        // The patches may have to be searched after f as a whole.
+        let usual = if self.edged.is_some() { MOST_CELLS } else { self.most };
+        let most = if self.search.is_ending { usual.max(MOST_AT_THE_END) } else { usual };
         most.saturating_sub(self.turns.before) / self.turns.in_round
     }
 
@@ -293,10 +305,8 @@ impl Octree {
     pub(crate) fn step(&mut self, field: &mut dyn Bounded, mut budget: u32) -> u32 {
         if self.state == SearchState::Ready {
             if bounds_say_something(field, &self.region.bounds) {
-                self.state = SearchState::Running;
-                let waiting = (0..field.factors()).map(|factor| self.search_of(field, factor)).collect();
-                self.turns = Turns { waiting, ..Turns::default() };
-                self.begin_turn();
+                self.given = self.singular.len();
+                self.begin_searches(field);
             } else {
                 self.state = SearchState::Unavailable;
             }
@@ -326,8 +336,24 @@ impl Octree {
                 self.turns.waiting.push_back(core::mem::take(&mut self.search));
                 self.begin_turn();
             }
+            if self.edged.is_some() && !self.undecided.is_empty() {
+                self.edged = None;
+                self.witnesses.clear();
+                self.undecided.clear();
+                self.singular.truncate(self.given);
+                self.begin_searches(field);
+            }
         }
         budget
+    }
+
+    /// Begins the searches of f as a whole or of its factors.
+    fn begin_searches(&mut self, field: &mut dyn Bounded) {
+        self.state = SearchState::Running;
+        let searched = self.edged.map_or(0..field.factors(), |whole| whole..whole + 1);
+        let waiting = searched.map(|factor| self.search_of(field, factor)).collect();
+        self.turns = Turns { waiting, ..Turns::default() };
+        self.begin_turn();
     }
 
     /// Visits the cells of the level in this range: each is discarded, decided, left out or halved.
@@ -336,7 +362,14 @@ impl Octree {
         let factor = *factor;
         let searched: Vec<Cell> =
             level[range].iter().filter(|cell| !is_left_out(cell, isolated)).copied().collect();
-        for fate in self.judge.fates(field, factor, &self.region.bounds, &searched) {
+        let region = self.region.bounds;
+        let fates = if self.edged == Some(factor) {
+            let mut pieces = Pieces::default();
+            searched.iter().filter_map(|cell| pieces.fate(field, factor, cell, &region)).collect()
+        } else {
+            self.judge.fates(field, factor, &region, &searched)
+        };
+        for fate in fates {
             match fate {
                 Fate::Halved(cell) => self.halve(field, cell, DEPTH),
                 Fate::Irregular(cell) => self.halve(field, cell, IRREGULAR_DEPTH),
@@ -458,7 +491,7 @@ mod tests {
         let field = evaluator.bounded().expect("a formula has bounds");
         let begun = |field: &mut dyn Bounded| {
             let mut octree = Octree { most: MOST_CELLS, ..Octree::default() };
-            octree.begin(true, &Bounds::cube(1.0));
+            octree.begin(Some(&mut *field), &Bounds::cube(1.0));
             octree.search = octree.search_of(field, 0);
             octree
         };

@@ -38,7 +38,7 @@ pub(crate) struct ComponentSearch {
 impl ComponentSearch {
     /// Begins the search on a new field, with its known singular points.
     pub(crate) fn begin(&mut self, field: &mut dyn Evaluator, bounds: &Bounds, singular: &[Singular]) {
-        self.octree.begin(field.bounded().is_some(), bounds);
+        self.octree.begin(field.bounded(), bounds);
         self.octree.singular.extend_from_slice(singular);
         self.points.clear();
         (self.lost, self.unresolved) = (0, None);
@@ -229,6 +229,11 @@ impl ComponentSearch {
         };
         let left = self.audit.step(&mut audited, budget);
         if self.audit.is_done() { left } else { 0 }
+    }
+
+    /// Whether the proof takes in the edges of the surface.
+    pub(crate) fn proves_edges(&self) -> bool {
+        self.octree.edged.is_some()
     }
 
     /// Whether there is a witness on every component, by proof.

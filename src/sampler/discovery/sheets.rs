@@ -5,6 +5,7 @@ use crate::field::{Bounded, Enclosure};
 use crate::math::newton::{self, StepLimits, step_to_surface};
 use crate::math::{Bounds, Interval, ROUNDING};
 use crate::sampler::discovery::cell::rise;
+use crate::sampler::discovery::creased::Pieces;
 use crate::sampler::discovery::octree::Region;
 use glam::DVec3;
 
@@ -43,13 +44,22 @@ impl Prover<'_> {
     /// The proof is the one of the [octree](super::octree), on a box around both points. f is
     /// monotone along the axis nearest the normal, and the surface through the first point leaves
     /// the box only through its sides. So it is the graph of a function over the rectangle between
-    /// the two, and meets the line through the second point exactly once.
+    /// the two, and meets the line through the second point exactly once. On a surface with edges
+    /// the proof is that of its [pieces](Pieces::connect).
     pub(crate) fn are_connected(
         &mut self,
         segments: &[Segment],
         within: Option<&Bounds>,
     ) -> [bool; TOGETHER] {
         let slack = self.slack;
+        if self.field.edged() == Some(self.factor) {
+            let (mut pieces, region) = (Pieces::default(), self.region.bounds);
+            return core::array::from_fn(|k| {
+                segments.get(k).is_some_and(|&Segment { from, to }| {
+                    pieces.connect(self.field, self.factor, [from.position, to], slack, &region)
+                })
+            });
+        }
         let mut boxes = [Bounds::point(DVec3::ZERO); 3 * TOGETHER];
         let mut known = [Enclosure::UNKNOWN; 3 * TOGETHER];
         for (k, segment) in segments.iter().enumerate() {

@@ -237,6 +237,18 @@ pub(super) struct FactorProgram {
 }
 
 impl FactorProgram {
+    /// The program of a function with this gradient, whose zeros are zeros of the field, node
+    /// `whole`.
+    pub(super) fn of(graph: &mut Graph, function: Id, gradient: [Id; 3], whole: Id) -> Self {
+        let [x, y, z] = gradient;
+        let first = BoxProgram::compile(graph, &[function, x, y, z, whole]);
+        let second = (first.operations() <= MAX_OPERATIONS)
+            .then(|| derivative::hessian(graph, gradient))
+            .map(|second| BoxProgram::compile(graph, &second))
+            .filter(|second| second.operations() <= MAX_OPERATIONS);
+        Self { first, second }
+    }
+
     /// Recomputes the bounds that depend on the parameters alone.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         self.first.set_parameters(parameters);
@@ -261,13 +273,8 @@ pub(super) fn factors(graph: &mut Graph, function: Id, gradient: [Id; 3], whole:
     factors
         .into_iter()
         .map(|f| {
-            let [x, y, z] = if f == function { gradient } else { derivative::gradient(graph, f) };
-            let first = BoxProgram::compile(graph, &[f, x, y, z, whole]);
-            let second = (first.operations() <= MAX_OPERATIONS)
-                .then(|| derivative::hessian(graph, [x, y, z]))
-                .map(|second| BoxProgram::compile(graph, &second))
-                .filter(|second| second.operations() <= MAX_OPERATIONS);
-            FactorProgram { first, second }
+            let gradient = if f == function { gradient } else { derivative::gradient(graph, f) };
+            FactorProgram::of(graph, f, gradient, whole)
         })
         .collect()
 }
