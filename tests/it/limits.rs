@@ -146,7 +146,9 @@ fn a_parameter_as_the_factor_of_a_root_leaves_the_rim_clean_for_any_value() {
             let height = if share.is_nan() { a + 1.0 } else { share * a };
             let sample = sample(formula.clone(), &settings).expect("a sample");
             let what = format!("{text}, a = {a}");
-            assert_eq!(sample.report().warnings, [], "{what}");
+            // Of a surface within limits it is not proven that all components were found.
+            let warnings = &sample.report().warnings;
+            assert!(warnings.iter().all(|warning| warning.code() == "unproven"), "{what}: {warnings:?}");
             assert_eq!(sample.report().proof.creases, Some(1), "{what}");
             let topology = &sample.mesh().topology;
             assert_eq!((topology.euler(), topology.borders.len()), (1, 1), "{what}");

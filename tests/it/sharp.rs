@@ -236,7 +236,9 @@ fn creases_that_touch_share_a_particle() {
             "{formula}"
         );
         assert!(mesh.left_out.is_empty(), "{formula}");
-        assert_eq!(sample.report().warnings, [], "{formula}");
+        // Where edges touch, it is not proven that all components were found.
+        let warnings = &sample.report().warnings;
+        assert!(warnings.iter().all(|warning| warning.code() == "unproven"), "{formula}: {warnings:?}");
         let proof = &sample.report().proof;
         assert_eq!([proof.creases, proof.corners], creases.map(Some), "{formula}");
         let volume = sample.volume().expect("a closed mesh");
