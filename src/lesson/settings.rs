@@ -338,7 +338,8 @@ pub enum LessonError {
     #[error(
         "about {} particles are to be expected, and the event log follows at most {}: \
          choose radii {factor:.2} times as large",
-        grouped(*expected as usize), grouped(*limit as usize)
+        grouped(expected),
+        grouped(limit)
     )]
     TooMany {
         /// Expected number of particles.

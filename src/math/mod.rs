@@ -48,9 +48,9 @@ pub(crate) fn place_text(position: [f64; 3], length: f64) -> String {
     format!("({})", position.map(|x| text_within(x, length)).join(", "))
 }
 
-/// A count with commas between thousands.
+/// A count, which is not negative, with commas between thousands.
 #[must_use]
-pub fn grouped(count: usize) -> String {
+pub fn grouped(count: impl ToString) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (k, digit) in digits.chars().enumerate() {

@@ -300,7 +300,7 @@ pub enum SettingsError {
     /// The columns of that many particles do not fit into the memory.
     #[error(
         "there is not enough memory for about {} particles: choose fewer, or a larger radius",
-        grouped(*particles as usize)
+        grouped(particles)
     )]
     Memory {
         /// Expected number of particles.

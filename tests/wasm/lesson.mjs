@@ -29,7 +29,7 @@ for (const { name, field, settings, events, half, digest } of runs) {
 const lesson = new Lesson();
 const [{ field }] = runs;
 for (const [bad, settings, words] of [
-  [field, { radius: 0.001 }, /20000/],
+  [field, { radius: 0.001 }, /20,000/],
   [{ ...field, formula: 'x^2 +' }, { radius: 0.1 }, /./],
   [field, { radius: 0.1, order: 'heap' }, /queue/],
 ]) {

@@ -14,7 +14,7 @@ pub enum Refusal {
     /// The survey predicts too few particles for a refinement.
     #[error(
         "Not refined: that takes at least {} particles, and {} were expected.",
-        4 * LEAST_PARTICLES, grouped(*expected as usize)
+        4 * LEAST_PARTICLES, grouped(expected)
     )]
     Few {
         /// Number of particles that the survey predicts.
