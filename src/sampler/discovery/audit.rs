@@ -192,7 +192,10 @@ impl Audit {
             .collect();
         sort_few(&mut near, |a, b| a.0 < b.0);
         near.truncate(TOGETHER);
-        near.into_iter().any(|(_, to)| prover.is_connected(Segment { from, to }))
+        near.into_iter().any(|(_, to)| {
+            let segment = Segment { from, to };
+            prover.is_connected(segment) || is_connected_along(prover, segment, reach)
+        })
     }
 }
 
@@ -221,62 +224,91 @@ fn on_factor(
     near.iter().zip(known).filter_map(index_if_on).collect()
 }
 
-/// Explores the zero set of a factor of the field from its point `from`, to a distance of `most`:
-/// along its cuts with eight half-planes through the normal.
-pub(crate) fn explore(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Unsampled {
-    /// Eight lanes. The reach of a path half-way between two axes of an ellipse is at least 0.92 of
-    /// the longer one: cos 22.5°.
-    const PATHS: usize = 8;
-    /// Steps of a path. A circle takes 32, the long way around a spheroid with axes of 1 and 3
-    /// takes 200. With fewer a small component may count twice.
-    const STEPS: u32 = 256;
-    /// A step as a share of the radius of curvature: its sagitta is a fiftieth of that.
-    const SHARE: f64 = 0.2;
-    /// Largest step as a share of `most`: a path that is flat at its start may bend farther on.
-    const LARGEST: f64 = 1.0 / 16.0;
-    let gradient = value_at(field, factor, from).1;
-    let normal = gradient.try_normalize().unwrap_or(DVec3::Z);
-    let (u, v) = crate::math::tangent_frame(normal.as_vec3());
-    let mut second = [Sym3::splat(Interval::EVERYTHING)];
-    field.enclose_second(factor, &[Bounds::point(from)], &mut second);
-    let mut known = [Enclosure::UNKNOWN; PATHS];
-    let most_second = second[0].entries().into_iter().map(Interval::magnitude).fold(0.0, f64::max);
-    let bend = most_second / gradient.length();
-    // `min` passes over a NaN.
-    let step = (SHARE / bend).min(LARGEST * most);
-    let mut at = [from; PATHS];
-    let mut heading: [DVec3; PATHS] = core::array::from_fn(|k| {
-        let angle = core::f64::consts::TAU * k as f64 / PATHS as f64;
-        u.as_dvec3() * libm::cos(angle) + v.as_dvec3() * libm::sin(angle)
-    });
-    let outward = heading;
-    // The half-plane of each path is perpendicular to this.
-    let across = heading.map(|direction| normal.cross(direction));
-    let mut farthest = [0.0_f64; PATHS];
-    // A path is closed once it returns to its start in the direction in which it left.
-    let mut is_closed = [false; PATHS];
-    let reach_of = |farthest: [f64; PATHS]| farthest.into_iter().fold(0.0, f64::max);
-    for _ in 0..STEPS {
-        let mut next: [DVec3; PATHS] = core::array::from_fn(|k| at[k] + heading[k] * step);
-        // Two Newton steps in the half-planes.
+/// Steps of a path. A circle takes 32, the long way around a spheroid with axes of 1 and 3 takes
+/// 200. With fewer a small component may count twice.
+const STEPS: u32 = 256;
+
+/// Paths along cuts of the zero set of a factor of the field with planes.
+struct Paths<const N: usize> {
+    at: [DVec3; N],
+    heading: [DVec3; N],
+    /// The plane of each path is perpendicular to this.
+    across: [DVec3; N],
+    /// Length of a step.
+    step: f64,
+}
+
+impl<const N: usize> Paths<N> {
+    /// Paths from a point with this unit normal in these directions, perpendicular to it, which
+    /// lead to a distance of `most`.
+    fn new(
+        (field, factor): (&mut dyn Bounded, usize),
+        ExactPoint { position, normal }: ExactPoint,
+        heading: [DVec3; N],
+        most: f64,
+    ) -> Self {
+        /// A step as a share of the radius of curvature: its sagitta is a fiftieth of that.
+        const SHARE: f64 = 0.2;
+        /// Largest step as a share of `most`: a path that is flat at its start may bend farther on.
+        const LARGEST: f64 = 1.0 / 16.0;
+        let gradient = value_at(field, factor, position).1;
+        let mut second = [Sym3::splat(Interval::EVERYTHING)];
+        field.enclose_second(factor, &[Bounds::point(position)], &mut second);
+        let most_second = second[0].entries().into_iter().map(Interval::magnitude).fold(0.0, f64::max);
+        let bend = most_second / gradient.length();
+        let across = heading.map(|direction| normal.cross(direction));
+        // `min` passes over a NaN.
+        Self { at: [position; N], heading, across, step: (SHARE / bend).min(LARGEST * most) }
+    }
+
+    /// Makes a step on each path.
+    fn advance(&mut self, field: &mut dyn Bounded, factor: usize) {
+        let Self { at, heading, across, step } = self;
+        let mut known = [Enclosure::UNKNOWN; N];
+        let mut next: [DVec3; N] = core::array::from_fn(|k| at[k] + heading[k] * *step);
+        // Two Newton steps in the planes.
         for _ in 0..2 {
             field.enclose(factor, &next.map(Bounds::point), &mut known);
-            for k in 0..PATHS {
+            for k in 0..N {
                 let (value, gradient) = known[k].middle();
                 let within = gradient - across[k] * gradient.dot(across[k]);
                 let correction = step_to_surface((value, within));
                 if correction.is_finite() {
-                    next[k] -= correction.clamp_length_max(step);
+                    next[k] -= correction.clamp_length_max(*step);
                 }
                 let along = across[k].cross(within).normalize_or_zero();
                 let along = if along.dot(next[k] - at[k]) < 0.0 { -along } else { along };
                 heading[k] = if along == DVec3::ZERO { heading[k] } else { along };
             }
         }
-        at = next;
+        *at = next;
+    }
+}
+
+/// Explores the zero set of a factor of the field from its point `from`, to a distance of `most`:
+/// along its cuts with eight half-planes through the normal.
+pub(crate) fn explore(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Unsampled {
+    /// Eight lanes. The reach of a path half-way between two axes of an ellipse is at least 0.92 of
+    /// the longer one: cos 22.5°.
+    const PATHS: usize = 8;
+    let normal = value_at(field, factor, from).1.try_normalize().unwrap_or(DVec3::Z);
+    let (u, v) = crate::math::tangent_frame(normal.as_vec3());
+    let outward: [DVec3; PATHS] = core::array::from_fn(|k| {
+        let angle = core::f64::consts::TAU * k as f64 / PATHS as f64;
+        u.as_dvec3() * libm::cos(angle) + v.as_dvec3() * libm::sin(angle)
+    });
+    let start = ExactPoint { position: from, normal };
+    let mut paths = Paths::new((&mut *field, factor), start, outward, most);
+    let mut farthest = [0.0_f64; PATHS];
+    // A path is closed once it returns to its start in the direction in which it left.
+    let mut is_closed = [false; PATHS];
+    let reach_of = |farthest: [f64; PATHS]| farthest.into_iter().fold(0.0, f64::max);
+    for _ in 0..STEPS {
+        paths.advance(field, factor);
         for k in 0..PATHS {
-            let distance = (at[k] - from).length();
-            is_closed[k] |= distance < step && farthest[k] > step && heading[k].dot(outward[k]) > 0.0;
+            let distance = (paths.at[k] - from).length();
+            let has_returned = distance < paths.step && farthest[k] > paths.step;
+            is_closed[k] |= has_returned && paths.heading[k].dot(outward[k]) > 0.0;
             farthest[k] = farthest[k].max(distance);
         }
         if reach_of(farthest) > most {
@@ -288,6 +320,40 @@ pub(crate) fn explore(field: &mut dyn Bounded, factor: usize, from: DVec3, most:
     }
     let goes_on = is_closed.contains(&false);
     Unsampled { position: from.to_array(), reach: reach_of(farthest), goes_on }
+}
+
+/// Whether the two points of a segment are proven to be connected along the cut of the zero set
+/// with the plane through both that contains the normal at the first, one way or the other, no
+/// farther than `most` from that one.
+fn is_connected_along(prover: &mut Prover, Segment { from, to }: Segment, most: f64) -> bool {
+    let Some(across) = from.normal.cross(to - from.position).try_normalize() else { return false };
+    let ahead = across.cross(from.normal);
+    let factor = prover.factor;
+    let mut paths = Paths::new((&mut *prover.field, factor), from, [ahead, -ahead], most);
+    let mut ends = [Some(from); 2];
+    for _ in 0..STEPS {
+        paths.advance(prover.field, factor);
+        for (end, at) in ends.iter_mut().zip(&mut paths.at) {
+            let Some(before) = *end else { continue };
+            let next = prover.land(*at).filter(|next| {
+                next.position.distance(from.position) <= most
+                    && prover.is_connected_by_segments(Segment { from: before, to: next.position })
+            });
+            if let Some(next) = next {
+                *at = next.position;
+                if next.position.distance(to) <= paths.step
+                    && prover.is_connected_by_segments(Segment { from: next, to })
+                {
+                    return true;
+                }
+            }
+            *end = next;
+        }
+        if ends.iter().all(Option::is_none) {
+            return false;
+        }
+    }
+    false
 }
 
 /// Whether one of the particles with these indices lies on the small piece around a seed, which has

@@ -138,7 +138,7 @@ impl Prover<'_> {
 
     /// The point of the surface that Newton's method along the gradient finds from `p`, to full
     /// precision.
-    fn land(&mut self, p: DVec3) -> Option<ExactPoint> {
+    pub(crate) fn land(&mut self, p: DVec3) -> Option<ExactPoint> {
         let limits = StepLimits { share_at_rest: ROUNDING, ..StepLimits::steps(newton::STEPS) };
         let (position, gradient) = newton::land(p, limits, |p| Some(self.newton_step(p)))?;
         gradient.try_normalize().map(|normal| ExactPoint { position, normal })
