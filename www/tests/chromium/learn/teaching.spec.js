@@ -33,7 +33,7 @@ test('the questions are printed on two pages, without a guess and without an ans
   await expect(page.locator('.chapter').filter({ visible: true })).toHaveCount(0);
   // Eight of the chapters, and the purposes for which pairs are judged.
   await expect(paper.locator('ol > li')).toHaveCount(12);
-  await expect(paper).toContainText('How many has it on this surface?');
+  await expect(paper).toContainText('How many particles has ring 12 on this surface?');
   await expect(paper).toContainText('Thin tumours must not fall between them.');
   expect(await paper.innerText()).not.toMatch(/71|Ring 12 of this surface has|right/);
   const sheets = await page.pdf({ format: 'A4', preferCSSPageSize: true });

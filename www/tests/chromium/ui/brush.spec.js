@@ -120,7 +120,7 @@ test('the brush paints, undoes, erases, is kept in the link and cleared', { tag:
     const paint = page.getByRole('button', { name: 'Paint', exact: true });
     await expect(paint).toHaveAttribute('aria-disabled', 'true');
     await paint.click({ force: true });
-    await expect(page.locator('#explain')).toContainText('Adaptive sizes follow the curvature');
+    await expect(page.locator('#explain')).toContainText('adaptive sizes, which follow the curvature');
   });
   await clean();
 });

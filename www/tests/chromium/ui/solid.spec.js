@@ -70,7 +70,9 @@ test('a unit cell has the same particles on opposite faces', { tag: '@all' }, as
       await settled(page);
       const { pairs, cut, warnings } = await report(page);
       expect(pairs).toBeGreaterThan(100);
-      expect([cut, warnings]).toEqual([null, []]);
+      // Where the box cuts an intricate surface, it is not always proven that no component is missing.
+      const others = warnings.filter((/** @type {{code: string}} */ { code }) => code !== 'unproven');
+      expect([cut, others]).toEqual([null, []]);
       // One period, wherever the cell lies.
       await expect(page.getByText('6.28 × 6.28 × 6.28')).toBeVisible();
       expect((await state(page)).settings.box_cell).toBe('periodic');
