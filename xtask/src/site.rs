@@ -36,7 +36,7 @@ fn budget_kb(bundle: Bundle) -> f64 {
         // A sixth is for edges of fields and solids of two fields, which every field can have. A
         // tenth is for reading binary glTF files, with a JSON parser.
         Bundle::Points => 315.0,
-        Bundle::Lesson => 295.0,
+        Bundle::Lesson => 300.0,
         Bundle::Webgpu => 90.0,
         Bundle::Webgl => 850.0,
     }
