@@ -79,7 +79,7 @@
 //! | Term | Meaning |
 //! |---|---|
 //! | particle | A point of the sample, with position, normal and repulsion radius. |
-//! | repulsion radius, r | Half of the wanted distance between neighbours; the size of a particle. |
+//! | repulsion radius, r | Half of the distance between neighbours that the sampler aims at; the size of a particle. |
 //! | spacing | The distance between neighbours, 2r. Of voxels: the distance between their centres. |
 //! | front | The particles of the newest generation level, which grow over the surface. |
 //! | seed | A first particle, from which a front grows. |

@@ -12,8 +12,9 @@ use marching_particles::{Bounds, Run, Settings};
 /// Largest relative difference from the wanted wall that needs no correction: printers do not
 /// resolve it.
 const CLOSE: f64 = 5e-3;
-/// Most corrections. A shell grows by at most its thickness, so each correction reduces the
-/// difference to the wall's share of the longest side.
+/// Number of times the thickness is corrected for the size of the shell. A shell grows by at most
+/// its thickness, so each correction reduces the difference to the wall's share of the longest
+/// side.
 const CORRECTIONS: u32 = 2;
 
 impl SampleArguments {

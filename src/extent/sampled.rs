@@ -27,7 +27,7 @@ pub(super) async fn find(field: &dyn Field) -> Extent {
     Extent { bounds: FALLBACK, reach: Reach::Unknown }
 }
 
-/// [`find`], by the changes of sign that are `counted`; none if there are none.
+/// The extent that [`find`] finds by the changes of sign that are `counted`, if there are any.
 async fn find_by(field: &mut dyn Evaluator, counted: Counted) -> Option<Extent> {
     let mut seen = None;
     let mut halves = HALVES.into_iter().rev();

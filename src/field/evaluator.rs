@@ -272,8 +272,9 @@ pub trait Bounded: Evaluator {
     /// Under the same conditions as [`Bounded::enclose`].
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]);
 
-    /// The number by which [`Bounded::enclose`] and [`Bounded::gives`] take f as a whole, with all
-    /// of its pieces, if f has edges and [`Bounded::pieces_in`] knows them; by default none.
+    /// The factor's number that stands for f as a whole in [`Bounded::enclose`] and
+    /// [`Bounded::gives`], if f has edges and [`Bounded::pieces_in`] knows its pieces; by default
+    /// none.
     fn edged(&mut self) -> Option<usize> {
         None
     }

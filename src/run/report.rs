@@ -153,8 +153,8 @@ pub struct Proof {
     /// itself says which pieces meet at its edges, and if no edge was found.
     #[cfg_attr(test, ts(as = "Option<String>"))]
     pub edges_found: Option<EdgeSearch>,
-    /// Smooth joins: curves of particles along which patches of the surface meet without an edge;
-    /// none if there are none.
+    /// Number of smooth joins, the curves of particles along which patches of the surface meet
+    /// without an edge; `None` on a surface without any.
     pub seams: Option<usize>,
 }
 

@@ -513,8 +513,8 @@ pub(super) struct Branches {
     /// The function that replaces f where factors of a product cross, since its gradient does not
     /// vanish there: the function of the graph.
     pub(super) split: Option<Arc<Compiled>>,
-    /// The parts that vanish only at an edge of theirs, by their index, with functions of one sign
-    /// there of which each is the norm, or its negative; empty if there are no such functions.
+    /// The parts that vanish only at an edge of theirs, by their index. Such a part is the norm
+    /// √(u² + v² + …), or its negative, of functions of one sign: these follow, if they are known.
     pub(super) edges: Vec<(usize, Vec<Id>)>,
     /// Whether f is equal to the function of the graph only up to [steps and
     /// ridges](super::steps).
@@ -698,8 +698,8 @@ impl Branches {
         self.met_in(values, bounds).map(|(numbers, _)| numbers)
     }
 
-    /// The same, with the parts that are left out because they vanish only at their edge, where
-    /// other branches are zero, too.
+    /// The branches [`within`](Self::within) a box, and the indices of the parts that vanish only
+    /// at their edge. Those are no branches there: other branches are zero at the same place.
     pub(super) fn met_in(&mut self, values: &[f64], bounds: &Bounds) -> Option<(Vec<u32>, Vec<usize>)> {
         if self.parts.is_empty() {
             return Some((vec![0], Vec::new()));

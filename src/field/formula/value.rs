@@ -69,8 +69,8 @@ impl Value {
     /// | `edge` | distance to the nearest sharp edge or rim; NaN if there is none |
     /// | `area` | share of the surface: a third of the triangles of the mesh around it, which adds up to the area of the mesh |
     ///
-    /// So `0.5 (k_1 + k_2)` is the mean curvature and `k_1 k_2` the Gaussian one. On an edge, where
-    /// there is no curvature, formulas that use it give NaN.
+    /// The mean curvature is `0.5 (k_1 + k_2)`, the Gaussian one `k_1 k_2`. An edge has no
+    /// curvature: formulas that use it give NaN there.
     ///
     /// # Errors
     ///

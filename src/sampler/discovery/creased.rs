@@ -44,7 +44,7 @@ const NEAR: f64 = 4.0;
 #[derive(Debug, Default)]
 pub(super) struct Pieces {
     known: Vec<Enclosure>,
-    /// The same pieces in the middle of the box.
+    /// Bounds of each of these pieces at the middle of the box.
     middle: Vec<Enclosure>,
 }
 
@@ -57,7 +57,7 @@ struct Rise {
 }
 
 impl Rise {
-    /// How far a path of this length in the plane leads on the surface.
+    /// Largest distance that a path on the surface covers above a path of this length in the plane.
     fn reach(&self, length: f64) -> f64 {
         length * libm::hypot(1.0, self.slope) * (1.0 + ROUNDING)
     }
