@@ -2,7 +2,7 @@
 //! order in which the front placed the particles, so generation levels are contiguous; particles
 //! that fill gaps come last.
 
-use crate::math::{Bounds, FNV_START, NONE, SHARP, fnv, sort_by_key};
+use crate::math::{Bounds, FNV_START, Meet, NONE, fnv, sort_by_key};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
@@ -325,7 +325,7 @@ impl Particles {
 
     /// Whether two rows of a particle have the normals of an edge.
     fn are_sharp(&self, a: u32, b: u32) -> bool {
-        f64::from(self.normal[a as usize].distance(self.normal[b as usize])) > SHARP
+        Meet::of_normals([a, b].map(|row| self.normal[row as usize].as_dvec3())) == Meet::Sharp
     }
 
     /// The first rows of the particles on the rim of the surface: on one side of a segment there is

@@ -5,6 +5,7 @@ mod forest;
 pub mod functions;
 pub(crate) mod interval;
 mod lanes;
+mod meet;
 pub(crate) mod newton;
 mod real;
 mod sort;
@@ -13,6 +14,7 @@ mod table;
 pub(crate) use forest::Forest;
 pub use interval::Interval;
 pub use lanes::{LANES, Lanes};
+pub(crate) use meet::{Meet, SHARP};
 pub use real::Real;
 pub use sort::sort_few;
 pub(crate) use sort::{key, key_of, median, signed_key, sort_by_key, sort_numbers, sort_pairs, unkey};
@@ -83,10 +85,6 @@ pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 /// Area of the cell of a hexagonal lattice, whose spacing is 2r, over r².
 pub(crate) const HEXAGONAL_CELL: f64 = 2.0 * SQRT_3;
-
-/// Sine of the least angle between two parts of a surface that counts as an edge: one degree, less
-/// than light and shadow show.
-pub(crate) const SHARP: f64 = 0.0175;
 
 /// The FNV-1a hash of no bytes.
 pub(crate) const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;

@@ -4,7 +4,7 @@
 use super::grid::Grid;
 use super::sampled::{Bracket, Sampled, Taylor};
 use crate::math::newton::step_to_corner;
-use crate::math::{Bounds, NONE, SHARP};
+use crate::math::{Bounds, Meet, NONE};
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
@@ -191,8 +191,7 @@ impl<'a> Search<'a> {
             return;
         };
         let slopes = [u, v].map(|k| self.vertices[k as usize].slope(position).1);
-        let [m, n] = slopes.map(DVec3::normalize_or_zero);
-        if m.cross(n).length() < SHARP && m.dot(n) > 0.0 {
+        if Meet::of_gradients(slopes) == Some(Meet::Tangent) {
             self.joined.push([u, v]);
             return;
         }

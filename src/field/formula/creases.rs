@@ -16,7 +16,7 @@ use super::operations::Unary;
 use super::{interval, scalar, steps};
 use crate::field::MARGIN;
 use crate::math::newton::{STEPS, step_to_curve};
-use crate::math::{Bounds, SHARP};
+use crate::math::{Bounds, Meet};
 use crate::slices::pause;
 use glam::DVec3;
 use std::sync::Arc;
@@ -26,12 +26,12 @@ use std::sync::Arc;
 const DEPTH: u32 = 15;
 
 /// Number of bisections after which a choice that can be neither excluded nor tested is judged by
-/// other cells; if none of them shows its kind, it counts: 256 cells on every axis. Fewer leave
-/// more edges open; more take longer.
+/// other cells; if none of them shows how its operands meet, it counts: 256 cells on every axis.
+/// Fewer leave more edges open; more take longer.
 const DEEPEST: u32 = 24;
 
-/// Maximum number of cells of a search, as many as there are after [`DEPTH`] bisections. Choices of
-/// unknown kind then get as many again.
+/// Maximum number of cells of a search, as many as there are after [`DEPTH`] bisections. Choices
+/// that are not decided by then get as many again.
 const MAX_CELLS: usize = 1 << DEPTH;
 
 /// Maximum number of cells that are visited to narrow creases down. The cells left are then
@@ -45,15 +45,6 @@ const MOST_OPEN_STEPS: usize = 4;
 /// Distance from the tie at which gradients are compared, and a hundred times the error of the
 /// tie's place; as a share of the diagonal of the box.
 const STEP: f64 = 1e-6;
-
-/// Kind of the surface where the operands of a choice are equal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum TieKind {
-    /// The surface is smooth where the operands are equal.
-    Smooth,
-    /// The gradient jumps, or the tie is the surface itself, where nothing can be said.
-    Crease,
-}
 
 /// How far f depends on a choice in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -175,19 +166,19 @@ impl Branches {
             values,
             bounds,
         };
-        let mut kinds = search(&around).kinds(&choices).await;
+        let mut meets = search(&around).meets(&choices).await;
         let search = search(bounds);
         // Either all products are split into factors, or none.
-        if self.products.iter().any(|&id| kinds[id as usize] == Some(TieKind::Crease)) {
-            self.products.iter().for_each(|&id| kinds[id as usize] = Some(TieKind::Crease));
+        if self.products.iter().any(|&id| meets[id as usize] == Some(Meet::Sharp)) {
+            self.products.iter().for_each(|&id| meets[id as usize] = Some(Meet::Sharp));
         } else if !self.products.is_empty() {
             return found;
         }
-        let of = |is_wanted: fn(TieKind) -> bool| -> Vec<Id> {
-            (0..).zip(&kinds).filter(|(_, kind)| kind.is_some_and(is_wanted)).map(|(id, _)| id).collect()
+        let of = |is_wanted: fn(Meet) -> bool| -> Vec<Id> {
+            (0..).zip(&meets).filter(|(_, meet)| meet.is_some_and(is_wanted)).map(|(id, _)| id).collect()
         };
         found.tied = Some(of(|_| true));
-        let creasing = of(|kind| kind == TieKind::Crease);
+        let creasing = of(|meet| meet == Meet::Sharp);
         found.creases = search.cells(&creasing, TieReach::Reached, width).await;
         if let Some(width) = width_of_smooth.filter(|_| !creasing.is_empty()) {
             found.smooth = search.cells(&of(|_| true), TieReach::Blended, width).await;
@@ -305,23 +296,23 @@ struct TieSearch<'a> {
 }
 
 impl TieSearch<'_> {
-    /// For each node the kind of its tie, if it is one of the `choices` and tied somewhere on the
+    /// For each node how its operands meet, if it is one of the `choices` and tied somewhere on the
     /// surface.
-    async fn kinds(&self, choices: &[Id]) -> Vec<Option<TieKind>> {
-        let mut kinds = vec![None; self.part.root as usize + 1];
+    async fn meets(&self, choices: &[Id]) -> Vec<Option<Meet>> {
+        let mut meets = vec![None; self.part.root as usize + 1];
         let mut open = vec![TieCell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
         let (mut scratch, mut jets) = (TieScratch::default(), Vec::new());
         let (mut left, mut is_extended) = (MAX_CELLS, false);
         // Choices that some cell leaves undecided.
         let mut doubted = Vec::new();
         while let Some(mut cell) = open.pop() {
-            cell.choices.retain(|&id| kinds[id as usize] != Some(TieKind::Crease));
+            cell.choices.retain(|&id| meets[id as usize] != Some(Meet::Sharp));
             if cell.choices.is_empty() {
                 continue;
             }
             if left == 0 {
-                // A kind known by now holds for all of the surface; the rest of the box is searched
-                // for the other choices.
+                // What is known by now holds for all of the surface; the rest of the box is
+                // searched for the other choices.
                 if is_extended {
                     doubted.append(&mut cell.choices);
                     continue;
@@ -329,7 +320,7 @@ impl TieSearch<'_> {
                 (is_extended, left) = (true, MAX_CELLS);
             }
             if is_extended {
-                cell.choices.retain(|&id| kinds[id as usize].is_none());
+                cell.choices.retain(|&id| meets[id as usize].is_none());
                 if cell.choices.is_empty() {
                     continue;
                 }
@@ -342,16 +333,16 @@ impl TieSearch<'_> {
                 if cell.depth < DEPTH {
                     return true;
                 }
-                let kind = match reach {
-                    TieReach::Reached => self.kind(*id, &cell.bounds, &mut scratch, &mut jets),
-                    TieReach::Blended | TieReach::Nowhere => Some(TieKind::Smooth),
+                let meet = match reach {
+                    TieReach::Reached => self.meet(*id, &cell.bounds, &mut scratch, &mut jets),
+                    TieReach::Blended | TieReach::Nowhere => Some(Meet::Tangent),
                 };
-                if kind.is_none() && cell.depth < DEEPEST {
+                if meet.is_none() && cell.depth < DEEPEST {
                     return true;
                 }
-                let known = &mut kinds[*id as usize];
-                *known = (*known).max(kind);
-                doubted.extend(kind.is_none().then_some(*id));
+                let known = &mut meets[*id as usize];
+                *known = (*known).max(meet);
+                doubted.extend(meet.is_none().then_some(*id));
                 false
             });
             if !cell.choices.is_empty() {
@@ -361,15 +352,15 @@ impl TieSearch<'_> {
             }
         }
         for id in doubted {
-            kinds[id as usize].get_or_insert_with(|| self.kind_in_doubt(id));
+            meets[id as usize].get_or_insert_with(|| self.meet_in_doubt(id));
         }
-        kinds
+        meets
     }
 
-    /// Kind of a choice for which no place is found anywhere. A product is split only if its
+    /// What counts for a choice for which no place is found anywhere. A product is split only if its
     /// factors cross: unsplit, it shows where they touch.
-    fn kind_in_doubt(&self, id: Id) -> TieKind {
-        if self.products.contains(&id) { TieKind::Smooth } else { TieKind::Crease }
+    fn meet_in_doubt(&self, id: Id) -> Meet {
+        if self.products.contains(&id) { Meet::Tangent } else { Meet::Sharp }
     }
 
     /// Cells in which one of these choices may be tied on the surface with at least this reach.
@@ -493,15 +484,15 @@ impl TieSearch<'_> {
         open_to
     }
 
-    /// Kind of the surface at a place near the cell where choice `id` is tied; none if no such
-    /// place is found.
-    fn kind(
+    /// How the operands of choice `id` meet at a place near the cell where they are tied; none if no
+    /// such place is found.
+    fn meet(
         &self,
         id: Id,
         cell: &Bounds,
         scratch: &mut TieScratch,
         jets: &mut scalar::Jets<0>,
-    ) -> Option<TieKind> {
+    ) -> Option<Meet> {
         let graph = &self.base.graph;
         // A place that is farther away is found from another cell.
         let reach = 2.0 * cell.diagonal();
@@ -534,7 +525,7 @@ impl TieSearch<'_> {
                 if !is_angle {
                     let is_near = |value: f64, slope_sq: f64| value * value <= slope_sq * size * size * STEP;
                     if is_near(f, gg) && is_near(t, hh) {
-                        return Some(self.kind_in_doubt(id));
+                        return Some(self.meet_in_doubt(id));
                     }
                     break;
                 }
@@ -550,11 +541,11 @@ impl TieSearch<'_> {
                     break;
                 }
                 let across = h * (STEP * size / hh.sqrt());
-                let [one, other] = [p + across, p - across].map(|p| at(p).0.1);
-                if (one - other).length() > SHARP * one.length().max(other.length()) {
-                    return Some(TieKind::Crease);
+                match Meet::of_gradients([p + across, p - across].map(|p| at(p).0.1)) {
+                    Some(Meet::Sharp) => return Some(Meet::Sharp),
+                    Some(Meet::Tangent) => best = Some(Meet::Tangent),
+                    None => return Some(self.meet_in_doubt(id)),
                 }
-                best = Some(TieKind::Smooth);
                 break;
             }
         }

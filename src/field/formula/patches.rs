@@ -10,7 +10,7 @@ use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, r
 use super::compiled::Compiled;
 use super::graph::Id;
 use crate::math::newton::{self, STEPS, Slope, StepLimits, step_to_surface};
-use crate::math::{Bounds, SHARP, SQRT_3};
+use crate::math::{Bounds, Meet, SQRT_3};
 use crate::slices::pause;
 use glam::DVec3;
 use std::sync::Arc;
@@ -187,17 +187,17 @@ impl Branches {
                 }
                 match self.between(values, [landed[j], landed[k]], APART * bounds.diagonal()) {
                     Some((pair, _)) if self.is_limit(pair[0], values) != self.is_limit(pair[1], values) => {}
-                    Some((pair, true)) => found.sharp.push(pair),
-                    Some((pair, false)) => found.tangent.push(pair),
+                    Some((pair, Meet::Sharp)) => found.sharp.push(pair),
+                    Some((pair, Meet::Tangent)) => found.tangent.push(pair),
                     None => found.is_open = true,
                 }
             }
         }
     }
 
-    /// The two branches that meet between two points of the surface, and whether they meet at an
-    /// angle; none if the surface is not found between the points.
-    fn between(&mut self, values: &[f64], ends: [Landed; 2], apart: f64) -> Option<([u32; 2], bool)> {
+    /// The two branches that meet between two points of the surface, and how they do; none if the
+    /// surface is not found between the points, or a gradient vanishes there.
+    fn between(&mut self, values: &[f64], ends: [Landed; 2], apart: f64) -> Option<([u32; 2], Meet)> {
         let [mut from, mut to] = ends;
         let mut halvings = 0..MOST_HALVINGS;
         while from.position.distance(to.position) > apart {
@@ -210,10 +210,8 @@ impl Branches {
                 to = middle;
             }
         }
-        let [u, v] = [from, to].map(|end| self.slope(values, end.position).1.normalize_or_zero());
-        // A vanishing gradient says nothing.
-        let is_known = u != DVec3::ZERO && v != DVec3::ZERO;
-        is_known.then(|| (ascending([from.branch, to.branch]), u.distance(v) > SHARP))
+        let meet = Meet::of_gradients([from, to].map(|end| self.slope(values, end.position).1))?;
+        Some((ascending([from.branch, to.branch]), meet))
     }
 
     /// The point of the surface to which Newton's method leads from `start`, within `reach`.

@@ -8,7 +8,7 @@
 use super::meeting::{MOST_TURN, Meeting, branch, limits};
 use crate::math::newton;
 use crate::math::newton::{step_to_curve, step_to_surface};
-use crate::math::{Bounds, SHARP, SQRT_3, tangent_frame};
+use crate::math::{Bounds, Meet, SQRT_3, tangent_frame};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
@@ -98,9 +98,7 @@ impl Meeting {
         let position =
             turn(pair, |share| landed(probe, first.position + way * share, (0.5 * reach).max(way.length())))?;
         let [u, v] = pair.map(|patch| normal(probe, patch, position));
-        // Written so that NaN fails.
-        let is_tangent = u.distance(v) <= SHARP && u != DVec3::ZERO;
-        if !is_tangent {
+        if Meet::of_gradients([u, v]) != Some(Meet::Tangent) {
             return None;
         }
         let (a, b) = tangent_frame(u.as_vec3());
