@@ -237,16 +237,18 @@ impl<'f> Sampler<'f> {
         let mut particles = core::mem::take(&mut self.cover.particles);
         particles.clear();
         particles.origin = origin;
+        let searched = core::mem::take(&mut self.cover.components).into_octree();
         self.cover = Cover { particles, ..Cover::default() };
         let mut memory = ProbeMemory::default();
         let surface = Arc::make_mut(&mut self.surface);
+        surface.searched = searched.or_else(|| surface.searched.take());
         let creases =
             creases.or_else(|| (!surface.is_surveyed()).then(|| core::mem::take(&mut surface.creases)));
         if let Some(creases) = creases {
             *surface = Surface::find(field, origin, bounds, settings.survey_cells, creases, &mut memory);
         }
         let is_adaptive = settings.sampling == Sampling::Adaptive;
-        let mut components = surface.begin_search(field, is_adaptive, &mut memory);
+        let components = surface.begin_search(field, is_adaptive, &mut memory);
         let surface = &*self.surface;
         let evaluator = &mut *field.evaluator(surface.frame);
         let wish = self.wish();
@@ -262,7 +264,6 @@ impl<'f> Sampler<'f> {
             .then(|| Refining::new(&mut attempt, evaluator, surface, settings));
         counts.refusal = refining.as_ref().and_then(|refining| refining.as_ref().err().copied());
         let predicted = attempt.predicted_count(settings);
-        components.expect(predicted.min(f64::from(settings.max_particles)));
         if settings.size_mode == SizeMode::Count && settings.count <= settings.max_particles {
             let room = (f64::from(settings.count) * COUNT_ROOM) as u32;
             self.settings.max_particles = settings.max_particles.max(room);

@@ -4,6 +4,7 @@
 //! The sampler makes a [`Surface`] once, at the start of a run; the stages of its methods read it.
 
 use super::discovery::grid::DENSE_CELLS;
+use super::discovery::octree::Octree;
 use super::discovery::search::ComponentSearch;
 use super::discovery::singular::{self, Bend, NearSurvey, Singular};
 use super::discovery::survey::{Absence, Survey, bare_among, bare_size, spacing, survey};
@@ -29,6 +30,8 @@ pub(super) struct Surface {
     /// The singular points near those of the survey.
     pub(super) singular: Vec<Singular>,
     pub(super) tips: Vec<Tip>,
+    /// The search for components by bounds, with its witnesses, once a run has completed it.
+    pub(super) searched: Option<Octree>,
 }
 
 /// The creases of a surface in a box, and the function whose patches they separate.
@@ -105,7 +108,7 @@ impl Surface {
         };
         let touches = survey.touches;
         let (singular, tips) = (Vec::new(), Vec::new());
-        let mut surface = Self { bounds: *bounds, frame, survey, creases, singular, tips };
+        let mut surface = Self { bounds: *bounds, frame, survey, creases, singular, tips, searched: None };
         // Where f touches zero only, all of the surface is singular.
         if !is_dense && !touches {
             surface.find_singular_points(&mut Probe::new(field, &mut ProbeMemory::default()));
@@ -126,7 +129,7 @@ impl Surface {
     ) -> Option<Self> {
         let frame = frame_for(function, self.frame.origin, bounds);
         let survey = survey(&mut Probe::new(&mut *function.evaluator(frame), memory), bounds, None);
-        (survey.area != 0.0).then(|| Self { bounds: *bounds, frame, survey, ..self.clone() })
+        (survey.area != 0.0).then(|| Self { bounds: *bounds, frame, survey, searched: None, ..self.clone() })
     }
 
     /// Whether the survey has found the surface by itself. What is added to another one depends on
@@ -146,9 +149,11 @@ impl Surface {
     ) -> ComponentSearch {
         let field = &mut *function.evaluator(self.frame);
         let mut components = ComponentSearch::default();
-        components.begin(field, &self.bounds, &self.singular);
+        match &self.searched {
+            Some(octree) => components.begin_with(octree.clone()),
+            None => components.begin(field, &self.bounds, &self.singular),
+        }
         components.leave_out_bare(self.bare_place().map(|_| bare_size(spacing(&self.bounds))));
-        components.expect(0.0);
         if self.survey.area == 0.0 {
             let (tolerance, least_gap) = (self.survey.tolerance(), self.survey.least_gap(is_adaptive));
             let probe = &mut Probe::new(field, memory);

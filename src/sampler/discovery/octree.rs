@@ -77,12 +77,13 @@ const DEPTH: u8 = 16;
 /// Halvings after which a cell is left undecided where f jumps or is undefined. Such cells lie
 /// along curves and faces, so there are many. More halvings prove no more.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Largest number of cells visited, and how many more for every expected particle: a cell takes
-/// about a third of the time of a particle. Most smooth surfaces of the gallery take 100 to 8,000
-/// cells, and two take 60,000 to 70,000. Sixteen cone points add none; Barth's sextic with fifty
-/// takes 36,000.
-const MOST_CELLS: usize = 8_192;
-const CELLS_PER_PARTICLE: f64 = 0.5;
+/// Largest number of cells visited. A cell takes about a third of the time of a particle. Most
+/// smooth surfaces of the gallery take 100 to 8,000 cells, and two take 60,000 to 70,000. Sixteen
+/// cone points add none; Barth's sextic with fifty takes 36,000.
+const MOST_CELLS: usize = 32_768;
+/// Largest number of cells visited for f as a whole, if it has edges: its patches may have to be
+/// searched after that.
+const MOST_OF_EDGED: usize = 8_192;
 /// Largest number of cells visited where each level has hardly more of them than the one before it:
 /// the search is then near its end.
 const MOST_AT_THE_END: usize = 65_536;
@@ -146,8 +147,6 @@ pub(crate) struct Octree {
     state: SearchState,
     /// The region searched.
     pub(crate) region: Region,
-    /// Largest number of cells that the searches of all factors together may visit.
-    most: usize,
     /// The search under way.
     search: FactorSearch,
     turns: Turns,
@@ -277,15 +276,9 @@ impl Octree {
         sort_by_key(&mut self.witnesses, |witness| witness.factor as u64);
     }
 
-    /// Sets the expected number of particles, which limits the number of cells visited.
-    pub(crate) fn expect(&mut self, particles: f64) {
-        self.most = MOST_CELLS + (CELLS_PER_PARTICLE * particles) as usize;
-    }
-
     /// Number of cells that the search may visit in this turn.
     fn allowed(&self) -> usize {
-        // The patches may have to be searched after f as a whole.
-        let usual = if self.edged.is_some() { MOST_CELLS } else { self.most };
+        let usual = if self.edged.is_some() { MOST_OF_EDGED } else { MOST_CELLS };
         let most = if self.search.is_ending { usual.max(MOST_AT_THE_END) } else { usual };
         most.saturating_sub(self.turns.before) / self.turns.in_round
     }
@@ -490,7 +483,7 @@ mod tests {
         let mut evaluator = field.evaluator(Frame::default());
         let field = evaluator.bounded().expect("a formula has bounds");
         let begun = |field: &mut dyn Bounded| {
-            let mut octree = Octree { most: MOST_CELLS, ..Octree::default() };
+            let mut octree = Octree::default();
             octree.begin(Some(&mut *field), &Bounds::cube(1.0));
             octree.search = octree.search_of(field, 0);
             octree

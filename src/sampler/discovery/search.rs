@@ -38,23 +38,26 @@ pub(crate) struct ComponentSearch {
 impl ComponentSearch {
     /// Begins the search on a new field, with its known singular points.
     pub(crate) fn begin(&mut self, field: &mut dyn Evaluator, bounds: &Bounds, singular: &[Singular]) {
-        self.octree.begin(field.bounded(), bounds);
-        self.octree.singular.extend_from_slice(singular);
-        self.points.clear();
-        (self.lost, self.unresolved) = (0, None);
-        self.is_projected = false;
-        self.restart();
+        let mut octree = Octree::default();
+        octree.begin(field.bounded(), bounds);
+        octree.singular.extend_from_slice(singular);
+        self.begin_with(octree);
+    }
+
+    /// Begins with a search by bounds that has been made before.
+    pub(crate) fn begin_with(&mut self, octree: Octree) {
+        *self = Self { octree, ..Self::default() };
+    }
+
+    /// The search by bounds, if it is complete. It depends on the field and the box alone.
+    pub(crate) fn into_octree(self) -> Option<Octree> {
+        Some(self.octree).filter(|octree| octree.is_available() && octree.is_done())
     }
 
     /// Sets the distance to which f is examined around witnesses, to leave out those on no surface;
     /// none to keep all.
     pub(crate) fn leave_out_bare(&mut self, size: Option<f64>) {
         self.bare_size = size;
-    }
-
-    /// Sets the expected number of particles.
-    pub(crate) fn expect(&mut self, particles: f64) {
-        self.octree.expect(particles);
     }
 
     /// Starts again with the first witness.
@@ -95,19 +98,20 @@ impl ComponentSearch {
     }
 
     /// The witnesses in the box; of those connected with each other only a few.
-    fn starts(&mut self, field: &mut dyn Bounded, bounds: &Bounds, tolerance: Tolerance) -> Vec<Witness> {
+    fn starts(&self, field: &mut dyn Bounded, bounds: &Bounds, tolerance: Tolerance) -> Vec<Witness> {
         let slack = f64::from(2.0 * tolerance.residual);
         let mut prover = Prover { field, factor: 0, slack, region: self.octree.region };
         // A zero of a branch that does not give f there is no point of the surface. The test is
         // made a little outside: where two bodies share a face, each of two branches gives f only
         // on its inner side.
-        self.octree.witnesses.retain(|&Witness { position, factor }| {
+        let mut witnesses = self.octree.witnesses.clone();
+        witnesses.retain(|&Witness { position, factor }| {
             let (value, gradient) = value_at(&mut *prover.field, factor, position);
             let outside = (slack * gradient.length() - value) / gradient.length_squared();
             let outside = if outside.is_finite() { position + outside * gradient } else { position };
             prover.field.gives(factor, outside)
         });
-        self.octree.witnesses = thinned_out(&mut prover, &self.octree.witnesses);
+        let witnesses = thinned_out(&mut prover, &witnesses);
         // A witness whose component lies only in the margin is not needed.
         let start = |&Witness { position, factor }: &Witness| {
             prover.factor = factor;
@@ -115,7 +119,7 @@ impl ComponentSearch {
                 if bounds.holds(position) { position } else { prover.moved_inside(position, bounds)? };
             Some(Witness { position, factor })
         };
-        self.octree.witnesses.iter().filter_map(start).collect()
+        witnesses.iter().filter_map(start).collect()
     }
 
     /// Projects the witnesses onto the surface as single precision computes it.
