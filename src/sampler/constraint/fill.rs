@@ -245,22 +245,25 @@ impl CreaseParticles {
     /// Adds a row for each patch of each particle, patch by patch, to empty columns. Returns a unit
     /// vector along the crease for each row.
     pub(in super::super) fn add_rows(&self, probe: &mut Probe, particles: &mut Particles) -> Vec<Vec3> {
-        let mut patches: Vec<u32> =
-            self.list.iter().flat_map(|particle| particle.patches.iter().copied()).collect();
-        patches.sort_unstable();
-        patches.dedup();
+        // The patches of each particle, with its number.
+        let of_particle = |(particle, k): (&CreaseParticle, u32)| {
+            let patches = particle.patches.clone();
+            patches.into_iter().map(move |patch| (patch, k))
+        };
+        let mut rows: Vec<(u32, u32)> = self.list.iter().zip(0..).flat_map(of_particle).collect();
+        rows.sort_unstable();
+        rows.dedup();
         let mut first: Vec<Option<u32>> = vec![None; self.list.len()];
-        let mut along = Vec::new();
-        for patch in patches {
-            let probe = &mut probe.on(Some(patch));
-            for (particle, first) in self.list.iter().zip(&mut first) {
-                if !particle.patches.contains(&patch) {
-                    continue;
-                }
+        let mut along = Vec::with_capacity(rows.len());
+        for of_patch in rows.chunk_by(|a, b| a.0 == b.0) {
+            let patch = Some(of_patch[0].0);
+            let probe = &mut probe.on(patch);
+            for &(_, k) in of_patch {
+                let particle = &self.list[k as usize];
                 let row = particles.len() as u32;
                 let normal = particle.normal(probe).unwrap_or_default();
-                particles.push_seed(particle.position, normal, particle.radius, Some(patch));
-                particles.twins.push(*first.get_or_insert(row));
+                particles.push_seed(particle.position, normal, particle.radius, patch);
+                particles.twins.push(*first[k as usize].get_or_insert(row));
                 along.push(particle.tangent);
             }
         }

@@ -8,6 +8,7 @@
 
 use super::meeting::{FADED, Meeting, branch, is_on};
 use super::{Creases, LONGEST, NEAR, ONE_CORNER};
+use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::pause;
 use glam::DVec3;
@@ -25,9 +26,14 @@ const BISECTIONS: u32 = 30;
 impl Creases {
     /// Adds a corner at each point at which a crease touches another one.
     pub(super) async fn touch(&mut self, probe: &mut Probe<'_>, step: f64) {
+        // No chord is longer, and no place that is looked at is farther from it.
+        let reach = (0.5 * LONGEST + NEAR) * step;
+        let boxes: Vec<Bounds> =
+            self.curves.iter().map(|curve| Bounds::around(curve.points.iter().copied())).collect();
         for k in 0..self.curves.len() {
             let curve = self.curves[k].clone();
-            for other in 0..self.curves.len() {
+            let around = boxes[k].enlarged(reach);
+            for other in (0..self.curves.len()).filter(|&other| !around.is_apart_from(&boxes[other])) {
                 let beside = &self.curves[other];
                 let is_new = |patch: &&u32| !curve.patches.contains(patch);
                 let thirds: Vec<u32> = beside.patches.iter().filter(is_new).copied().collect();
