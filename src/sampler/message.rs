@@ -58,11 +58,15 @@ impl Sampler<'_> {
                         "A surface that is small against that box, or beyond it, needs a box of its own.",
                     )
                 };
-                let nodes = match self.surface.survey.defined {
-                    1.0.. => "at every grid point".to_owned(),
-                    share => format!("at every grid point at which it has a value, {} of all,", percent(share)),
+                let (nodes, beyond) = match self.surface.survey.defined {
+                    1.0.. => ("at every grid point".to_owned(), ""),
+                    share => (
+                        format!("at every grid point at which it has a value, {} of all,", percent(share)),
+                        " Where f ends, as a square root does at zero, there is no surface: enter what is under the root, \
+                         or give f values beyond.",
+                    ),
                 };
-                format!("f keeps one sign {nodes} of {of_box}. {remedy}{}", self.undecided_place())
+                format!("f keeps one sign {nodes} of {of_box}. {remedy}{beyond}{}", self.undecided_place())
             }
             StopReason::NoSurface if self.surface.survey.absence == Absence::Limited => {
                 "Nothing of the surface is within its limits in this box: change the conditions in braces.".into()
