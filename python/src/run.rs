@@ -2,11 +2,11 @@
 
 use crate::errors;
 use crate::field::Field;
-use marching_particles::export::{RecordText, Vertices};
+use marching_particles::export::Vertices;
 use marching_particles::quality::NamedValues;
 use marching_particles::run::{Measured, Value};
 use marching_particles::session::{
-    Asked, FieldRequest, FileRecord, Lengths, Session, SolidSettings, SpacingText, ValueText, without_effect,
+    Asked, FieldRequest, Lengths, Session, SolidSettings, SpacingText, without_effect,
 };
 use marching_particles::{Bounds, Settings, Spacing, Warning};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -202,18 +202,13 @@ impl Motion {
             tell(progress, now.fraction)?;
         }
         session.run.check_field().map_err(|error| errors::of_run(&error))?;
-        let record = session.record(None);
         let mut sample = session.sample(*measured, |fraction| Ok::<(), Ended>(tell(progress, fraction)?))?;
         let surface = session.run.field();
         for (name, value) in columns {
             sample.add_value(surface, &name, &value).map_err(|error| errors::of_value(&error))?;
         }
         tell(progress, 1.0)?;
-        let record = record.map_or_else(RecordText::default, |made| {
-            let made = FileRecord { values: ValueText::of(sample.values()), ..made };
-            RecordText::new(&serde_json::to_string(&made).expect("a record is data"))
-        });
-        Ok(sample.recorded(record))
+        Ok(sample)
     }
 }
 

@@ -149,15 +149,6 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     };
     let reach = session.run.reach();
     let bounds = session.run.bounds();
-    // A record cannot hold an image or a mesh.
-    let mut made = session.record(None);
-    if let Some(made) = &mut made {
-        // The requested steps, although an even surface takes fewer.
-        made.settings.relax_steps = settings.relax_steps;
-        if matches!(origin, Origin::Points(_)) {
-            made.surface.clone_from(&arguments.surface.surface);
-        }
-    }
     let field = session.run.field().clone();
     bar.set_message("measuring");
     let sample = timed(&mut seconds.quality, || {
@@ -179,18 +170,19 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
             .add_value(&*field, name, &value)
             .map_err(|error| Failure::Usage(format!("--value: {error}")))?;
     }
-    if let Some(made) = &mut made {
-        made.values = ValueText::of(sample.values());
+    // A record cannot hold an image or a mesh.
+    let mut made = sample.file_record();
+    if let Some(made) = &mut made
+        && matches!(origin, Origin::Points(_))
+    {
+        made.surface.clone_from(&arguments.surface.surface);
     }
     let bodies = if is_joined { sample.mesh().bodies(sample.particles()) } else { Vec::new() };
     let placement = arguments.placement(arguments.bodies().size(&bodies).max_element());
     let mesh = is_joined.then(|| MeshCounts::new(&sample, &bodies, arguments.bodies(), placement));
     let is_printed =
         mesh_formats.iter().any(|format| matches!(format, MeshFormat::Stl | MeshFormat::ThreeMf));
-    let record = match &made {
-        Some(made) => RecordText::new(&serde_json::to_string(made).map_err(std::io::Error::other)?),
-        None => RecordText::default(),
-    };
+    let record = made.as_ref().map_or_else(RecordText::default, FileRecord::text);
     timed(&mut seconds.writing, || {
         for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
             let file = ParticleFile { format, record: record.clone() };

@@ -31,6 +31,7 @@ pub use given::{FieldError, IntoField, IntoFields, SharedError, kind};
 pub use piecewise::{BatchPiecewise, PiecewiseFn};
 
 use evaluator::Pointwise;
+use formula::Formula;
 
 use crate::math::Bounds;
 use crate::slices::Work;
@@ -213,6 +214,12 @@ pub trait Field: MaybeSend + MaybeSync {
     fn operand(&self) -> Option<Arc<dyn Field>> {
         None
     }
+
+    /// The formula, if the field is one by itself: the records of files name it.
+    #[doc(hidden)]
+    fn formula(&self) -> Option<&Formula> {
+        None
+    }
 }
 
 /// Facts about a field that its values do not show.
@@ -373,6 +380,10 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
 
     fn operand(&self) -> Option<Arc<dyn Field>> {
         (**self).operand()
+    }
+
+    fn formula(&self) -> Option<&Formula> {
+        (**self).formula()
     }
 }
 

@@ -9,9 +9,11 @@ mod jumps;
 mod measuring;
 mod mesh;
 mod plan;
+mod record;
 mod report;
 mod sample;
 mod severity;
+mod solid;
 mod state;
 mod values;
 mod warning;
@@ -23,6 +25,13 @@ pub use sample::{Sample, sample};
 pub use severity::Severity;
 pub use values::ValueError;
 pub use warning::Warning;
+
+#[doc(hidden)]
+pub use record::{FileRecord, SpacingText, ValueText};
+#[doc(hidden)]
+pub use solid::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
+
+pub(crate) use record::Origin;
 
 pub use crate::extent::Reach;
 pub use crate::field::Value;
@@ -156,6 +165,9 @@ struct RunState<'f> {
     most_particles: usize,
     /// The report on the start.
     start: Start,
+    /// The record of the start; none if a record cannot hold the surface or the spacing, or if the
+    /// particles have followed a moving surface.
+    made: Option<FileRecord>,
     last: Option<Progress>,
     /// The plan that fractions refer to.
     plan: Plan,
@@ -241,9 +253,23 @@ impl<'f, F: Field + 'f> Run<'f, F> {
     }
 
     /// Begins a run in the present box; the survey is kept if field and box are those of the last
-    /// start.
-    pub(crate) fn begin(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
-        self.state.begin(&shared(&self.field), settings)
+    /// start. `origin` is the surface as its record names it, if a record can.
+    pub(crate) fn begin(
+        &mut self,
+        settings: &Settings,
+        origin: Option<Origin>,
+    ) -> Result<Start, SettingsError> {
+        self.state.begin(&shared(&self.field), settings, origin)
+    }
+
+    /// The record of the last start, without what its particles add.
+    pub(crate) fn made(&self) -> Option<&FileRecord> {
+        self.state.made.as_ref()
+    }
+
+    /// The record of the present particles, which begins with their run; none before the first run.
+    pub(crate) fn record(&self) -> Option<FileRecord> {
+        self.state.record()
     }
 
     /// Sets the spacing by a function for the next start.
@@ -265,7 +291,8 @@ impl<'f, F: Field + 'f> Run<'f, F> {
         if let Some(bounds) = settings.bounds.filter(|bounds| *bounds != self.bounds()) {
             self.set_bounds(bounds, None);
         }
-        Ok(self.begin(&settings)?)
+        let origin = self.field.formula().map(Origin::of);
+        Ok(self.begin(&settings, origin)?)
     }
 
     /// Announces what the caller will do after the run, measure and [join](Run::join) the

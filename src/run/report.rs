@@ -612,7 +612,7 @@ mod tests {
             let field = Formula::parse("x^2 + y^2 + z^2 = 1").expect("a formula");
             let mut run = Run::idle(field, Bounds::cube(half));
             run.set_bounds(Bounds::cube(half), Some(Reach::Bounded));
-            run.begin(&Settings { radius_share, ..Settings::DEFAULT }).expect("a good box");
+            run.begin(&Settings { radius_share, ..Settings::DEFAULT }, None).expect("a good box");
             while run.step(u32::MAX).stop_reason.is_none() {}
             let report = run.report();
             assert!(report.count > 0 && (report.border > 0 || !is_cut), "{half}");

@@ -1,7 +1,7 @@
 //! The whole job in one call, and its result.
 
 use super::mesh::joined;
-use super::{Error, Report, Run, RunState, Warning};
+use super::{Error, FileRecord, Report, Run, RunState, Warning};
 use crate::export::{self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, RecordText, Vertices};
 use crate::field::IntoField;
 use crate::math::Bounds;
@@ -67,11 +67,13 @@ pub struct Sample {
     /// The sheets of the particles, if they were measured.
     sheets: Option<Arc<Sheets>>,
     mesh: OnceLock<Triangulation>,
-    record: RecordText,
+    /// What the record says of the run, without the digest and the columns.
+    made: Option<FileRecord>,
 }
 
 impl Sample {
     pub(super) fn new(run: RunState<'_>, report: Report) -> Self {
+        let made = run.beginning();
         Self {
             bounds: run.bounds,
             known: run.sampler.triangles().to_vec(),
@@ -79,7 +81,7 @@ impl Sample {
             measured: run.measuring.measured,
             sheets: run.measuring.sheets,
             report,
-            record: RecordText::default(),
+            made,
             mesh: run.meshing.into_joined().map_or_else(OnceLock::new, OnceLock::from),
         }
     }
@@ -93,7 +95,7 @@ impl Sample {
             measured: run.measuring.measured.clone(),
             sheets: run.measuring.sheets.clone(),
             report,
-            record: RecordText::default(),
+            made: run.beginning(),
             mesh: run.meshing.joined().cloned().map_or_else(OnceLock::new, OnceLock::from),
         }
     }
@@ -204,17 +206,26 @@ impl Sample {
         export::write_mesh(&file.into(), &self.particles, &self.measured, self.mesh(), &mut out)
     }
 
-    /// The sample with this record, which [`Sample::save`] and [`Sample::save_mesh`] write into
-    /// files that can hold it, and for CSV into a file next to it, with `.json` appended to the
-    /// name.
+    /// The record of how the sample was made, which [`Sample::save`] and [`Sample::save_mesh`]
+    /// write: `marching-particles sample --like` repeats the run from it. It is empty unless the
+    /// surface is that of a [`Formula`](crate::Formula), for the spacing by a function, and once
+    /// the particles have [followed](Run::follow) their surface.
     #[must_use]
-    pub fn recorded(self, record: RecordText) -> Self {
-        Self { record, ..self }
+    pub fn record(&self) -> RecordText {
+        self.file_record().map_or_else(RecordText::default, |record| record.text())
+    }
+
+    /// The record as a value.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn file_record(&self) -> Option<FileRecord> {
+        self.made.clone().map(|made| made.of(&self.particles, self.values()))
     }
 
     /// Writes a file of the format that its extension names: the mesh as `glb`, `3mf`, `stl` or
     /// `obj`, the particles as `ply`, `csv`, `npy` or `xyz`. For a mesh as PLY there is
-    /// [`Sample::save_mesh`].
+    /// [`Sample::save_mesh`]. The [record](Sample::record) is in the file if its format can hold
+    /// one; for CSV it is in a file next to it, with `.json` appended to the name.
     ///
     /// # Errors
     ///
@@ -233,9 +244,10 @@ impl Sample {
     }
 
     fn save_particles(&self, path: &Path, format: Format) -> io::Result<()> {
-        let file = ParticleFile { format, record: self.record.clone() };
-        written(path, |out| self.write(file, out))?;
-        match self.record.document() {
+        let record = self.record();
+        let document = record.document();
+        written(path, |out| self.write(ParticleFile { format, record }, out))?;
+        match document {
             Some(document) if format == Format::Csv => {
                 let mut beside = path.as_os_str().to_owned();
                 beside.push(".json");
@@ -246,7 +258,7 @@ impl Sample {
     }
 
     /// Writes the mesh to a file of the format that its extension names: `glb`, `3mf`, `stl`, `obj`
-    /// or `ply`.
+    /// or `ply`, with the [record](Sample::record) unless it is STL.
     ///
     /// # Errors
     ///
@@ -256,7 +268,7 @@ impl Sample {
         let Some(format) = of_path(path, MeshFormat::of_extension) else {
             return Err(no_format(path, MeshFormat::ALL.iter().map(|(name, _)| *name).collect()));
         };
-        let file = MeshFile { record: self.record.clone(), ..format.into() };
+        let file = MeshFile { record: self.record(), ..format.into() };
         written(path, |out| self.write_mesh(file, out))
     }
 

@@ -3,7 +3,7 @@
 use super::measuring::Measuring;
 use super::mesh::Meshing;
 use super::plan::{Plan, Shares};
-use super::{Error, FieldState, Known, Measured, RunState, Sample, Start, Warning};
+use super::{Error, FieldState, FileRecord, Known, Measured, Origin, RunState, Sample, Start, Warning};
 use crate::extent::{self, Reach};
 use crate::field::edges::{EdgeTable, KnownField, KnownPieces};
 use crate::field::{Evaluator, Field, Frame};
@@ -69,6 +69,7 @@ impl<'f> RunState<'f> {
             spacing_error: None,
             most_particles: usize::MAX,
             start: Start::default(),
+            made: None,
             last: None,
             plan: Plan::default(),
             measuring: Measuring::default(),
@@ -91,7 +92,7 @@ impl<'f> RunState<'f> {
             }
         };
         let mut run = Self { reach, spacing, ..Self::new(field, bounds) };
-        let begun = run.begin(field, settings);
+        let begun = run.begin(field, settings, field.formula().map(Origin::of));
         failure_of(field)?;
         begun?;
         Ok(run)
@@ -102,12 +103,15 @@ impl<'f> RunState<'f> {
         &mut self,
         field: &Arc<dyn Field + 'f>,
         settings: &Settings,
+        origin: Option<Origin>,
     ) -> Result<Start, SettingsError> {
         settings.validate()?;
         self.bounds.check()?;
         if self.spacing.is_some() && settings.radius.is_some() {
             return Err(SettingsError::RadiusOfVarying);
         }
+        let made = origin
+            .and_then(|origin| FileRecord::beginning(origin, self.bounds, settings, self.spacing.as_ref()));
         let mut settings = settings.in_shares_of(&self.bounds)?;
         if let Some(spacing) = &self.spacing {
             spacing.check_limits()?;
@@ -135,6 +139,7 @@ impl<'f> RunState<'f> {
         });
         let start = self.sampler.begin(&self.field.shared(field), origin, &bounds, settings, creases)?;
         self.known = Known::Survey;
+        self.made = made;
         self.last = None;
         self.measuring = Measuring::default();
         self.meshing = Meshing::default();
@@ -175,6 +180,7 @@ impl<'f> RunState<'f> {
         let bounds = self.local_bounds();
         self.sampler.follow(&self.field.shared(field), &bounds, is_closed)?;
         self.known = Known::Particles;
+        self.made = None;
         self.creases = None;
         self.remember(field, self.sampler.progress());
         Ok(())

@@ -72,7 +72,7 @@ impl Session {
     ///
     /// Why there is no such program, in a sentence.
     pub fn code(&self, language: Language, values: &[ValueText]) -> Result<Code, String> {
-        let (Some(record), Some(settings)) = (&self.made, self.started) else {
+        let (Some(record), Some(settings)) = (self.run.made(), self.started) else {
             let why =
                 "these particles are of no run on a formula, or have followed a moving surface: sample again";
             return Err(why.to_owned());

@@ -18,19 +18,21 @@ pub use asked::{Asked, Lengths};
 pub use code::{Code, Language};
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
-pub use fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 pub use image::{ImageFacts, ImageInfo, ImagePromise, LabelFacts};
 #[cfg(all(feature = "images", feature = "points"))]
 pub use mesh::OpenedMesh;
 pub use mesh::{MeshBorder, MeshInfo, MeshPart, MeshScan, MeshUnion};
 #[cfg(feature = "images")]
 pub use opened::OpenedSource;
-pub use record::{FileRecord, FileRequest, ValueText};
+pub use record::FileRequest;
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
     without_effect,
 };
-pub use spacing::SpacingText;
+
+pub use crate::run::{
+    BeyondPoints, BoxCell, BoxFaces, BoxMode, FileRecord, SolidSettings, SpacingText, ValueText,
+};
 
 use crate::extent::{FALLBACK, Reach};
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MODEL, MathNode, Parameter};
@@ -194,8 +196,6 @@ pub struct Session {
     spacing: Option<SpacingText>,
     /// The spacing of the next runs, if a function of the program gives it.
     spacing_function: Option<Spacing>,
-    /// The record of the present run.
-    made: Option<FileRecord>,
     /// Whether the box of the present run is the one that a search for it finds.
     is_box_found: bool,
     /// The settings of the last start, and its spacing by a formula.
@@ -230,7 +230,6 @@ impl Session {
             fitting: Fitting::default(),
             spacing: None,
             spacing_function: None,
-            made: None,
             is_box_found: false,
             started: None,
             spaced: None,
@@ -575,12 +574,11 @@ impl Session {
             self.fit(&|_| *settings, false, u32::MAX);
         }
         self.fitting.is_settled = false;
-        self.made = self.beginning(settings);
         self.is_box_found = self.fitting.is_fitted && !self.fitting.is_grown;
         self.started = Some(*settings);
         self.spaced = self.spacing.clone();
         self.run.set_spacing(self.next_spacing());
-        self.run.begin(settings)
+        self.run.begin(settings, self.origin())
     }
 
     /// Lets the particles of the last run, which had these settings, [follow](Run::follow) its
@@ -598,7 +596,6 @@ impl Session {
         }
         self.run.follow_field(is_closed)?;
         self.fitting.is_settled = false;
-        self.made = None;
         Ok(())
     }
 

@@ -1,83 +1,11 @@
-//! The record in a file, from which the particles can be made again, and the files of particles and
-//! meshes.
+//! The records of a session's runs, and the files of particles and meshes.
 
-use super::{BoxFaces, Session, SolidSettings, Source, SpacingText};
+use super::{BoxFaces, FileRecord, Session, Source};
 use crate::export::{
     self, Bodies, Format, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Vertices,
 };
-use crate::field::rbf::Pull;
-use crate::math::Bounds;
-use crate::quality::NamedValues;
-use crate::sampler::{Method, Settings};
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-
-/// The record in a file, from which the same particles can be made again. Files store it as JSON
-/// ([`export::RecordText`]).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS))]
-pub struct FileRecord {
-    /// Version of the program.
-    pub version: String,
-    /// Digest of the particles, 16 hexadecimal digits.
-    pub digest: String,
-    /// Link to the page in this state, if the page made the file.
-    #[serde(default)]
-    pub link: Option<String>,
-    /// Gallery surface whose formula it is.
-    #[serde(default)]
-    pub surface: Option<String>,
-    /// Model from points, instead of a formula.
-    #[serde(default)]
-    pub model: Option<String>,
-    /// Pulls on the surface of the model.
-    #[serde(default)]
-    pub pulls: Vec<Pull>,
-    /// Text of the formula; empty for a model alone.
-    pub formula: String,
-    /// Values of its parameters.
-    #[serde(default)]
-    pub parameters: BTreeMap<String, f64>,
-    /// Box of the run.
-    pub bounds: Bounds,
-    /// Box whose faces close the solid, if they do.
-    #[serde(default)]
-    pub faces: Option<Bounds>,
-    /// Settings of the solid that is made of the surface before it is sampled.
-    #[serde(default)]
-    #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
-    pub solid: SolidSettings,
-    /// Spacing of the run, if it is by a formula.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(test, ts(optional))]
-    pub spacing: Option<SpacingText>,
-    /// Columns that formulas added.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(test, ts(as = "Option<Vec<ValueText>>", optional))]
-    pub values: Vec<ValueText>,
-    /// Settings of the run.
-    #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
-    pub settings: Settings,
-}
-
-/// A column of numbers at the particles, by a formula that may use the parameters of the surface.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS))]
-pub struct ValueText {
-    /// Name of the column.
-    pub name: String,
-    /// Text of the formula.
-    pub formula: String,
-}
-
-impl ValueText {
-    /// The columns that formulas gave; a record cannot hold functions.
-    pub fn of(added: &[NamedValues]) -> Vec<Self> {
-        let text =
-            |own: &NamedValues| own.formula.clone().map(|formula| Self { name: own.name.clone(), formula });
-        added.iter().filter_map(text).collect()
-    }
-}
+use crate::run::Origin;
+use serde::Deserialize;
 
 /// Request for a mesh file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -101,54 +29,35 @@ pub struct FileRequest {
 impl Session {
     /// The record of the present particles, which begins with their run; none before the first run.
     pub fn record(&self, link: Option<String>) -> Option<FileRecord> {
-        let mut record = self.made.clone()?;
-        record.digest = format!("{:016x}", self.run.particles().digest());
-        record.link = link;
-        record.values = ValueText::of(&self.run.measured().values);
-        // Steps made after the run count as its own: ten and one are eleven.
-        if let (Method::Front, Some(progress)) = (record.settings.method, self.run.progress()) {
-            record.settings.relax_steps = progress.relax_step;
-        }
-        Some(record)
+        self.run.record().map(|record| FileRecord { link, ..record })
     }
 
-    /// The record of a run that starts now; none if a file or a function of the program gives the
-    /// surface, or a function the spacing: a record cannot hold these.
-    pub(super) fn beginning(&self, settings: &Settings) -> Option<FileRecord> {
-        if self.spacing_function.is_some() {
-            return None;
-        }
-        let (formula, parameters, model, pulls) = match self.source() {
-            Source::Formula(field) => (field.text().to_owned(), field.parameters(), None, Vec::new()),
+    /// The present surface as its record names it; none if a file or a function of the program
+    /// gives it.
+    pub(super) fn origin(&self) -> Option<Origin> {
+        let choice = &self.fitting.choice;
+        let origin = match self.source() {
+            Source::Formula(field) => Origin::of(field),
             Source::Points { info, field, within } => {
-                let (text, parameters) = match within {
+                let (formula, parameters) = match within {
                     Some(formula) => (formula.text.clone(), formula.parameters.as_slice()),
                     None => (String::new(), [].as_slice()),
                 };
-                (text, parameters, Some(info.name.clone()), field.pulls().to_vec())
+                Origin {
+                    model: Some(info.name.clone()),
+                    pulls: field.pulls().to_vec(),
+                    ..Origin::of_text(formula, parameters)
+                }
             }
             #[cfg(feature = "images")]
             Source::Opened(_) => return None,
             Source::Function(_) => return None,
         };
-        // Collecting a map at once sorts it, by a stable sort that takes 3 kB.
-        let mut values = BTreeMap::new();
-        values.extend(parameters.iter().map(|p| (p.name.to_string(), p.value)));
-        Some(FileRecord {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            digest: String::new(),
-            link: None,
+        Some(Origin {
             surface: self.surface.map(|surface| surface.id.to_owned()),
-            model,
-            pulls,
-            formula,
-            parameters: values,
-            bounds: self.run.bounds(),
-            faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
-            solid: self.fitting.choice.clone(),
-            spacing: self.spacing.clone().filter(|_| self.next_spacing().is_some()),
-            values: Vec::new(),
-            settings: Settings { bounds: None, ..*settings },
+            faces: (choice.box_faces == BoxFaces::Closed).then_some(self.clip),
+            solid: choice.clone(),
+            ..origin
         })
     }
 

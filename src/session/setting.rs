@@ -1,7 +1,7 @@
 //! The settings as users see them: from this table the page builds a control for each, the command
 //! line an option, and `docs/settings.md` a row. Defaults and ranges agree with [`Settings`].
 
-use super::fitting::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
+use super::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 use crate::sampler::{Counting, GapPolicy, LawKind, Method, Pattern, Sampling, Settings, SizeMode};
 use core::ops::RangeInclusive;
 use serde::Serialize;

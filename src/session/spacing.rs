@@ -1,34 +1,11 @@
 //! The spacing of a session's runs, and values at their particles, as texts.
 
-use super::{Fault, FaultKind, Session, Source};
+use super::{Fault, FaultKind, Session, Source, SpacingText};
 use crate::field::formula::{FormulaError, Parameter};
 use crate::run::{Value, ValueError};
 use crate::sampler::Spacing;
-use serde::{Deserialize, Serialize};
-
-/// A spacing by a formula, as text: see [`Spacing`]. A record stores it next to the settings.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS))]
-pub struct SpacingText {
-    /// Distance between neighbours, in x, y, z and the parameters of the formula whose surface is
-    /// sampled, such as `0.02 + 0.1 hypot(x, y)`.
-    pub formula: String,
-    /// Smallest distance, used wherever the formula is below it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(test, ts(optional))]
-    pub smallest: Option<f64>,
-    /// Largest distance, used wherever the formula is above it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(test, ts(optional))]
-    pub largest: Option<f64>,
-}
 
 impl SpacingText {
-    /// Whether there is a smallest or a largest distance.
-    pub(super) fn is_limited(&self) -> bool {
-        self.smallest.or(self.largest).is_some()
-    }
-
     /// The spacing, with these parameters of the formula whose surface is sampled.
     fn spacing(&self, parameters: &[Parameter]) -> Result<Spacing, Fault> {
         let spacing = Spacing::of_formula(&self.formula, parameters)

@@ -717,6 +717,11 @@ impl Field for Formula {
     fn columns(&self) -> Vec<(&'static str, Value)> {
         value::of_columns(&self.written.columns, &self.parameters)
     }
+
+    /// An offset of the solid is another function than its text.
+    fn formula(&self) -> Option<&Formula> {
+        (!self.solid.is_turned()).then_some(self)
+    }
 }
 
 impl Piecewise for Formula {

@@ -39,6 +39,11 @@ impl Solid {
         self.is_negative ^= is_negative;
     }
 
+    /// Whether the function of the solid is [replaced](Self::turn).
+    pub(super) fn is_turned(&self) -> bool {
+        self.is_negative || self.shift != 0.0
+    }
+
     /// The node of the function that is at most 0 in the solid made of f, which is node `root`.
     pub(super) fn made_of(&self, graph: &mut Graph, root: Id) -> Id {
         // The limits of the surface become faces of a shell or of a closed solid.

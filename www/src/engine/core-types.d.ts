@@ -323,7 +323,7 @@ export type Figures = {
 };
 
 /** The record in a file, from which the same particles can be made again. Files store it as JSON
-* ([`export::RecordText`]). */
+* ([`RecordText`]). */
 export type FileRecord = {
   /** Version of the program. */
   version: string,

@@ -8,6 +8,7 @@ mod code;
 mod golden;
 mod images;
 mod meshes;
+mod records;
 mod spacing;
 mod sweeps;
 mod thickness;
