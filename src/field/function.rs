@@ -32,7 +32,7 @@ use glam::DVec3;
 ///
 /// A slow function is called less often with a given box, with its gradient, with a coarser survey
 /// ([`Settings::survey_cells`](crate::Settings::survey_cells)) and without measuring
-/// ([`Measured::Nothing`](crate::run::Measured::Nothing)); [`FnField::limit_calls`] sets a limit.
+/// ([`Run::complete`](crate::Run::complete)); [`FnField::limit_calls`] sets a limit.
 ///
 /// ```
 /// use glam::DVec3;

@@ -382,6 +382,28 @@ impl<'f, F: Field + 'f> Run<'f, F> {
         self.state.cancel(&self.field)
     }
 
+    /// Carries the run out, and makes a [`Sample`] of it in which these particles are measured, or
+    /// none: [`sample`] measures them.
+    ///
+    /// ```
+    /// use marching_particles::run::Measured;
+    /// use marching_particles::{Formula, Run, Settings};
+    ///
+    /// let surface = Formula::parse("x^2 + y^2 + z^2 = 1")?;
+    /// let run = Run::start(surface, &Settings::with_count(500))?;
+    /// let sample = run.complete(Measured::Nothing)?;
+    /// assert_eq!(sample.report().measures.quality, None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The error of [`Run::finish`].
+    pub fn complete(mut self, measured: Measured) -> Result<Sample, Error> {
+        while self.step(u32::MAX).stop_reason.is_none() {}
+        self.finish_with(measured)
+    }
+
     /// Measures the particles and makes a [`Sample`] of the run in its present state.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! The whole job in one call, and its result.
 
 use super::mesh::joined;
-use super::{Error, FileRecord, Report, Run, RunState, Warning};
+use super::{Error, FileRecord, Measured, Report, Run, RunState, Warning};
 use crate::export::{self, Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, RecordText, Vertices};
 use crate::field::IntoField;
 use crate::math::Bounds;
@@ -50,9 +50,7 @@ pub fn sample<Kind, S>(field: impl IntoField<Kind>, settings: &S) -> Result<Samp
 where
     SpacedSettings: for<'a> From<&'a S>,
 {
-    let mut run = Run::start(field, settings)?;
-    while run.step(u32::MAX).stop_reason.is_none() {}
-    run.finish()
+    Run::start(field, settings)?.complete(Measured::Particles)
 }
 
 /// The particles of a finished run, with the report on them; their mesh is made when first needed.
