@@ -22,6 +22,9 @@ const FLAT: f32 = 0.05;
 /// A front that cannot grow beyond the box ends at most this share of the spacing before it.
 /// Smaller: fewer fields that end at the box are refined.
 const OPEN_END: f32 = 1.3;
+/// Halvings of an edge between its crossing with a plane and that of the surface, at most: they end
+/// where single precision does.
+const HALVINGS: u32 = 24;
 
 /// The box in which a coarse front of particles with this radius grows.
 pub(crate) fn grown(bounds: &Bounds, radius: f64) -> Bounds {
@@ -89,45 +92,57 @@ fn cut(net: &mut Net, ground: &mut Ground, spacing: f32, plane: usize) -> Result
         let is_on = |v: u32| !net.walls.planes(v).common(Planes::of(plane)).is_inner();
         let is_crossing = is_beyond(net, a, plane) != is_beyond(net, b, plane) && !is_on(a) && !is_on(b);
         if is_crossing {
-            let common = net.planes_between(a, b);
-            let [p, q] = [a, b].map(|v| net.position[v as usize]);
-            let [d, e] = [p, q].map(|p| net.walls.depth(p, plane));
-            let start = p + (q - p) * (d / (d - e)).clamp(0.0, 1.0);
-            let planes = common.joined(Planes::of(plane));
-            let reach = spacing * net.size_between(a, b);
-            split(net, ground, h, EdgeSplit { near: start, planes, reach })?;
+            let site = crossing(net, ground, spacing, [a, b], plane)?;
+            split(net, h, site);
         }
         h += 1;
     }
     Ok(())
 }
 
-/// Target of the particle that splits an edge.
-struct EdgeSplit {
-    /// Estimate of the target's position.
-    near: Vec3,
-    /// Planes of the box that contain the target.
-    planes: Planes,
-    /// Largest distance of the target from the estimate.
-    reach: f32,
+/// The place where the surface over an edge crosses a plane.
+///
+/// It is looked for from the point in which the edge crosses the plane. Where the surface is almost
+/// parallel to the plane, the way along the plane may be long. Then the edge is halved by a point of
+/// the surface, as often as necessary, with its ends on both sides of the plane.
+fn crossing(
+    net: &Net,
+    ground: &mut Ground,
+    spacing: f32,
+    [a, b]: [u32; 2],
+    plane: usize,
+) -> Result<Site, Refusal> {
+    let common = net.planes_between(a, b);
+    let planes = common.joined(Planes::of(plane));
+    let [mut p, mut q] = [a, b].map(|v| net.position[v as usize]);
+    let mut reach = spacing * net.size_between(a, b);
+    let across = |p: Vec3, q: Vec3| {
+        let [d, e] = [p, q].map(|p| net.walls.depth(p, plane));
+        net.walls.pinned(p + (q - p) * (d / (d - e)).clamp(0.0, 1.0), planes)
+    };
+    let first = across(p, q);
+    let clear = (net.walls.lo - first).max(first - net.walls.hi).max_element();
+    for _ in 0..HALVINGS {
+        if let Some(site) = super::slide(ground, planes, across(p, q), reach) {
+            return Ok(site);
+        }
+        if clear > reach {
+            // The part beyond other planes is cut later, and need not lie on the surface.
+            return Ok(Site::smooth(first, net.normal[a as usize], planes));
+        }
+        let Some(middle) = super::slide(ground, common, (p + q) * 0.5, reach) else { break };
+        let is_out = net.walls.depth(middle.position, plane) < -net.walls.slack;
+        *(if is_out == is_beyond(net, a, plane) { &mut p } else { &mut q }) = middle.position;
+        reach *= 0.5;
+    }
+    Err(Refusal::Cut { at: first.into() })
 }
 
-/// Splits an edge by a particle on planes of the box.
-fn split(net: &mut Net, ground: &mut Ground, h: u32, crossing: EdgeSplit) -> Result<(), Refusal> {
-    let EdgeSplit { near, planes, reach } = crossing;
-    // The point may leave the box along the plane: the part beyond other planes is cut later, and
-    // need not lie on the surface.
-    let place = net.walls.pinned(near, planes);
-    let clear = (net.walls.lo - place).max(place - net.walls.hi).max_element();
-    let site = match super::slide(ground, planes, place, reach) {
-        Some(site) => site,
-        None if clear > reach => Site::smooth(place, net.normal[net.mesh.origin(h) as usize], planes),
-        None => return Err(Refusal::Cut { at: place.into() }),
-    };
+/// Splits an edge by a particle at a site.
+fn split(net: &mut Net, h: u32, site: Site) {
     let size = net.size_between(net.mesh.origin(h), net.mesh.target(h));
     let v = net.mesh.split(h);
     net.put_new(v, site, size);
-    Ok(())
 }
 
 /// Drops the faces of the mesh with a vertex beyond a face of the box.
@@ -169,10 +184,11 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
         let (a, b) = (net.mesh.origin(h), net.mesh.target(h));
         let (m, n) = (net.walls.planes(a), net.walls.planes(b));
         if m.common(n).is_inner() {
-            let start = (net.position[a as usize] + net.position[b as usize]) * 0.5;
             let planes = m.joined(n);
+            let start = net.walls.pinned((net.position[a as usize] + net.position[b as usize]) * 0.5, planes);
             let reach = 2.0 * spacing * net.size_between(a, b);
-            split(net, ground, h, EdgeSplit { near: start, planes, reach })?;
+            let corner = super::slide(ground, planes, start, reach);
+            split(net, h, corner.ok_or(Refusal::Cut { at: start.into() })?);
         }
     }
     Ok(())
