@@ -370,7 +370,8 @@ pub(crate) struct SurfaceArguments {
 
     /// Width in voxels of a Gaussian filter, in the plane of the slices: over the voxels of
     /// --image, against noise and rounding [default: by the measured noise, 0 or 0.7 to 2], or over
-    /// the distances from --label, against steps [default: 1]
+    /// the distances from --label, against steps [default: the root mean square of the distances
+    /// between voxels, 1 for cubes]
     #[arg(long, value_name = "VOXELS", value_parser = number, requires = "image", help_heading = "Surface")]
     pub(crate) smooth: Option<f64>,
 

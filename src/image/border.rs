@@ -1,5 +1,6 @@
 //! A surface that the border of an image cuts, closed there.
 
+use super::smooth::in_plane;
 use super::{Image, ImageError};
 use crate::slices::Meter;
 
@@ -18,14 +19,12 @@ impl Image {
         let slope = self.slope(iso, 0.0).await;
         let slope = if slope.is_finite() { slope } else { 0.25 * (self.range[1] - self.range[0]) };
         // The slope is that over a length; along each axis a voxel has its own.
-        let mut sorted = self.placement.spacing();
-        let spacing = sorted;
-        sorted.sort_by(f64::total_cmp);
+        let spacing = self.placement.spacing();
         // The nearest voxel of the image, and the distance from the cap, positive inside.
         let known = |axis: usize, at: usize| {
             let (own, last) = (at as f64 - ADDED as f64, (self.size[axis] - 1) as f64);
             let depth = (own + 0.5).min(last + 0.5 - own);
-            (own.clamp(0.0, last) as usize, depth * slope * spacing[axis] / sorted[1])
+            (own.clamp(0.0, last) as usize, depth * slope * spacing[axis] / in_plane(spacing))
         };
         let mut voxels = Vec::with_capacity(size.iter().product());
         let mut row = vec![0.0; self.size[0]];

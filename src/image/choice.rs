@@ -1,6 +1,6 @@
 //! The choice of a surface in an image, the same for all interfaces.
 
-use super::{DEFAULT_LABEL_WIDTH, Image, ImageError, ImageField};
+use super::{Image, ImageError, ImageField};
 use crate::slices::{self, LIGHT};
 
 /// A surface of an image: at an iso value, or around a label.
@@ -11,7 +11,8 @@ pub struct ImageChoice {
     /// The label whose voxels are inside, instead of an iso value.
     pub label: Option<f64>,
     /// Width of the Gaussian in voxels, 0 for no Gaussian. The default is the [width against
-    /// noise](Image::width_against_noise), or [`DEFAULT_LABEL_WIDTH`].
+    /// noise](Image::width_against_noise), or for a label that [against
+    /// steps](Image::width_against_steps).
     pub smooth: Option<f64>,
     /// Whether the darker voxels are inside.
     pub is_dark_inside: bool,
@@ -112,7 +113,7 @@ impl Image {
         };
         let smooth = match (choice.smooth, choice.label, choice.iso) {
             (Some(smooth), ..) => smooth,
-            (None, Some(_), _) => DEFAULT_LABEL_WIDTH,
+            (None, Some(_), _) => self.width_against_steps(),
             (None, None, Some(iso)) => self.width_at(iso, noise).await,
             (None, None, None) => self.width_at(self.counted().await.otsu(), noise).await,
         };

@@ -1,13 +1,10 @@
 //! Labels: whole numbers that assign each voxel to an organ, grain or phase.
 
-use super::smooth::{blur, deviations};
+use super::smooth::{WIDTHS_IN_A_VOXEL, blur, deviations, in_plane};
 use super::{Image, ImageError};
 use crate::slices::{self, LIGHT, Meter};
 use std::collections::BTreeMap;
 
-/// Width of the Gaussian over the distances from a label, in voxels. Smaller: the steps between
-/// voxels show in the normals. Larger: corners are rounded more.
-pub const DEFAULT_LABEL_WIDTH: f64 = 1.0;
 /// Number of different values up to which whole numbers count as labels. With more they are grey
 /// values.
 const MOST_LABELS: usize = 4096;
@@ -62,15 +59,16 @@ impl Image {
     }
 
     /// The image of the signed distance from the boundary of a label, positive inside, blurred by a
-    /// Gaussian of `width` voxels ([`DEFAULT_LABEL_WIDTH`] is a good start). Its surface is
-    /// [at](Image::at) 0. The distance is measured to the nearest voxel on the other side, minus
+    /// Gaussian of `width` voxels, as that of [`Image::smoothed`]; the [width against
+    /// steps](Image::width_against_steps) is a good start. Its surface is [at](Image::at) 0. The distance is measured to the nearest voxel on the other side, minus
     /// half a voxel (P. Felzenszwalb & D. Huttenlocher, "Distance Transforms of Sampled Functions",
     /// Theory of Computing 8, 2012).
     ///
     /// The boundary of a label is known to half a voxel, and for smooth bodies the surface stays
     /// within that. The Gaussian smooths the steps between voxels: they turn normals by about 4°
-    /// with a width of 1, 2° with 1.5, and 26° without it. It rounds corners by about its width and
-    /// removes parts thinner than two widths, which a [note](Image::notes) reports.
+    /// with the width against steps, 2° with one and a half times as much, and 26° without it. It
+    /// rounds corners by about its width and removes parts thinner than two widths, which a
+    /// [note](Image::notes) reports.
     ///
     /// # Errors
     ///
@@ -78,6 +76,21 @@ impl Image {
     /// the Gaussian removes it, [`ImageError::Width`] if the width is not in 0 to 100.
     pub fn label(&self, value: f64, width: f64) -> Result<Self, ImageError> {
         slices::complete(self.distance_from(value, width))
+    }
+
+    /// The width of the Gaussian that smooths the steps of a label's boundary, in voxels as for
+    /// [`Image::smoothed`]: the root mean square of the distances between voxels along the three
+    /// axes, to a tenth. It is 1 for cubes, and 1.9 for voxels of 1 × 1 × 3. Smaller: the steps show
+    /// in the normals. Larger: corners are rounded more.
+    ///
+    /// A boundary with the normal n has steps of height |n_x| d_x, |n_y| d_y and |n_z| d_z. Over all
+    /// directions their mean square is that of the distances d.
+    #[must_use]
+    pub fn width_against_steps(&self) -> f64 {
+        let spacing = self.placement.spacing();
+        let ratios = spacing.map(|own| own / in_plane(spacing));
+        let mean_sq = ratios.iter().map(|ratio| ratio * ratio).sum::<f64>() / 3.0;
+        libm::round(libm::sqrt(mean_sq) * WIDTHS_IN_A_VOXEL) / WIDTHS_IN_A_VOXEL
     }
 
     /// [`Image::label`] in slices of work.
@@ -128,8 +141,8 @@ impl Image {
         let mut notes = self.notes.to_vec();
         if lost as f64 > LOST * count as f64 {
             notes.push(format!(
-                "{:.0} % of the label's voxels are outside of its surface: what is thinner than two voxels is lost; a \
-                 smaller width keeps more of it.",
+                "{:.0} % of the label's voxels are outside of its surface: what is thinner than twice the Gaussian of \
+                 {width:.1} voxels is lost; a smaller width keeps more of it.",
                 100.0 * lost as f64 / count as f64
             ));
         }

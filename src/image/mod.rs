@@ -22,7 +22,7 @@ mod voxels;
 
 pub use choice::{ImageChoice, ImageSurface};
 pub use field::ImageField;
-pub use labels::{DEFAULT_LABEL_WIDTH, Label};
+pub use labels::Label;
 pub use placement::Placement;
 pub(crate) use read::opened;
 pub use read::{ImageFormat, ImageOutline, ImageReadError, MAX_IMAGE_BYTES, RawVoxels};

@@ -18,25 +18,26 @@ const LEFT: f64 = 0.02;
 /// Range of the Gaussian's width against noise, in voxels. Narrower ones hardly lower noise, and
 /// wider ones remove what is a few voxels wide.
 const WIDTHS: [f64; 2] = [0.7, 2.0];
-/// Largest width against the rounding of voxels alone, in voxels, as for labels: a mask of 0 and 1
-/// holds no details that a wider Gaussian could reveal.
-const WIDEST_AGAINST_ROUNDING: f64 = 1.0;
 /// Widths are multiples of a tenth of a voxel, so that they seldom change with the iso value.
-const WIDTHS_IN_A_VOXEL: f64 = 10.0;
+pub(super) const WIDTHS_IN_A_VOXEL: f64 = 10.0;
 /// Standard deviation of the error of rounding to whole numbers, 1/√12.
 const ROUNDING: f64 = 0.288_675_134_594_812_9;
 /// Number of voxels along each axis at which the slope is measured, at most; those near the surface
 /// count.
 const SCANNED: usize = 64;
 
-/// The standard deviations of a Gaussian along the axes, in voxels. Its length in space is `width`
-/// voxels of the coarser in-plane axis; the slices of a scan lie across the axis with the largest
-/// spacing.
+/// The length that counts as a voxel: the spacing of the coarser in-plane axis. The slices of a
+/// scan lie across the axis with the largest spacing.
+pub(super) fn in_plane(mut spacing: [f64; 3]) -> f64 {
+    spacing.sort_by(f64::total_cmp);
+    spacing[1]
+}
+
+/// The standard deviations of a Gaussian of `width` voxels along the axes, in voxels of each. Its
+/// length in space is the same along all of them.
 pub(super) fn deviations(image: &Image, width: f64) -> [f64; 3] {
-    let mut sorted = image.placement.spacing();
-    let spacing = sorted;
-    sorted.sort_by(f64::total_cmp);
-    spacing.map(|own| width * sorted[1] / own)
+    let spacing = image.placement.spacing();
+    spacing.map(|own| width * in_plane(spacing) / own)
 }
 
 /// The weights of a Gaussian at 0, 1, 2, …; with those at −1, −2, … they add up to 1.
@@ -218,7 +219,9 @@ impl Image {
     /// or 0 if the noise moves it less without a Gaussian. The [noise](Image::noise) is compared
     /// with the slope of the values at the surface. Rounding to whole numbers counts as noise, too,
     /// with a standard deviation of 0.29 steps: where the slope is shallow, it makes the surface
-    /// rough. Against rounding alone the width is at most 1.
+    /// rough. Against rounding alone the width is at most that [against
+    /// steps](Image::width_against_steps): a mask of 0 and 1 holds no details that a wider Gaussian
+    /// could reveal.
     ///
     /// A Gaussian of σ voxels lowers independent noise by the factor (4πσ²)^(3/4).
     #[must_use]
@@ -242,7 +245,7 @@ impl Image {
         // The measured noise includes rounding, except where many voxels are equal.
         let beside = libm::sqrt((noise * noise - rounding * rounding).max(0.0));
         let against_noise = width_for(beside, WIDTHS[1]);
-        against_noise.max(width_for(noise.max(rounding), WIDEST_AGAINST_ROUNDING))
+        against_noise.max(width_for(noise.max(rounding), self.width_against_steps()))
     }
 
     /// The median size of the gradient where the values cross `iso` between two neighbours, per
@@ -265,10 +268,8 @@ impl Image {
         let [width, height, depth] = self.size;
         let zero = self.middle();
         let level = (iso - zero) as f32;
-        let mut sorted = self.placement.spacing();
-        let spacing = sorted;
-        sorted.sort_by(f64::total_cmp);
-        let scale = spacing.map(|own| sorted[1] / own);
+        let spacing = self.placement.spacing();
+        let scale = spacing.map(|own| in_plane(spacing) / own);
         let mut squares = Vec::new();
         let mut rows = [vec![0.0_f32; width], vec![0.0; width], vec![0.0; width]];
         for k in (0..depth).step_by(steps[2]) {

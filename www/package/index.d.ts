@@ -53,8 +53,8 @@ export interface Options {
   label?: number;
   /**
    * of an image: width of a Gaussian in voxels, 0 for none. The default is 0 or 0.7 to 2, by the measured noise and the
-   * rounding of whole numbers; for a label it is 1, over the distances. Of a mesh: treats it as a scan, and is the
-   * width in cells of its grid, up to 10
+   * rounding of whole numbers; for a label it is the root mean square of the distances between voxels, 1 for cubes, over
+   * the distances. Of a mesh: treats it as a scan, and is the width in cells of its grid, up to 10
    */
   smooth?: number;
   /** of an image: whether the darker voxels are inside */

@@ -41,7 +41,7 @@ class Image(Field):
         label: Whole number whose voxels are inside, in place of ``iso``.
         smooth: Width of a Gaussian in voxels: against noise, by default from 0.7 to 2 or 0, by the
             noise that is measured and the rounding of whole numbers; over the distances from a
-            label by default 1.
+            label by default the root mean square of the distances between voxels, 1 for cubes.
         inside: ``"bright"`` or ``"dark"``: which voxels are inside.
         border: ``"open"`` or ``"closed"``: whether a surface that the border of the image cuts ends
             there with a rim, or is closed half a voxel beyond the outermost centres.
