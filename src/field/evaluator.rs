@@ -212,6 +212,11 @@ pub trait Evaluator: super::MaybeSend + super::MaybeSync {
     /// f, ∇f and ∇∇f at `p` in double precision, which set-up, proofs and measurements use.
     fn jet(&mut self, p: DVec3) -> Jet;
 
+    /// Lets [`values`](Evaluator::values), [`gradients`](Evaluator::gradients) and
+    /// [`hessians`](Evaluator::hessians) continue f smoothly beyond the border of its domain, if the
+    /// field can. The box of a run may end at that border, and fronts grow beyond the box.
+    fn continue_beyond(&mut self) {}
+
     /// f and ∇f at each point in double precision.
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
         for (k, p) in points.iter().enumerate() {

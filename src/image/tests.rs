@@ -5,7 +5,7 @@ use crate::extent::{self, Reach};
 use crate::field::{Enclosure, Field, Frame};
 use crate::math::{Bounds, Interval, Sym3};
 use crate::run::{Report, sample};
-use crate::sampler::{Search, Settings};
+use crate::sampler::{Method, Search, Settings};
 use crate::slices;
 use glam::{DVec3, Vec3, dvec3};
 use rand_core::{Rng, SeedableRng};
@@ -314,6 +314,63 @@ fn the_box_is_that_of_the_surface_or_of_the_image_that_cuts_it() {
 }
 
 #[test]
+fn batches_can_continue_beyond_the_border() {
+    let image = image_of([9, 8, 10], |p| (p - dvec3(1.0, 7.0, 4.0)).length_squared());
+    let image = image.with_spacing([1.0, 0.5, 2.0]).expect("spacings");
+    let field = image.at(16.0).expect("a surface");
+    let beyond = [Vec3::new(-4.0, 2.0, 8.0), Vec3::new(13.0, -2.0, 8.0), Vec3::new(20.0, 9.0, -7.0)];
+    let (mut value, mut gradient) = ([0.0; 3], [Vec3::ZERO; 3]);
+    let mut evaluator = field.evaluator(Frame::default());
+    evaluator.gradients(&beyond, &mut value, &mut gradient);
+    assert!(value.iter().all(|value| value.is_nan()), "{value:?}");
+    evaluator.continue_beyond();
+    let mut evaluator = evaluator.another();
+    evaluator.gradients(&beyond, &mut value, &mut gradient);
+    let (mut same, mut hessian) = ([0.0; 3], [Sym3::default(); 3]);
+    evaluator.values(&beyond, &mut same);
+    assert_eq!(value, same);
+    let mut slope = [Vec3::ZERO; 3];
+    evaluator.hessians(&beyond, &mut same, &mut slope, &mut hessian);
+    assert_eq!((value, gradient), (same, slope));
+    let size = field.image().size();
+    for (k, p) in beyond.iter().enumerate() {
+        // Along a straight line across the border f rises evenly.
+        let placement = field.image().placement();
+        let last = DVec3::from_array(size.map(|n| n as f64 - 1.0));
+        let nearest = placement.point(placement.index(p.as_dvec3()).clamp(DVec3::ZERO, last));
+        let way = p.as_dvec3() - nearest;
+        let jet = field.jet(nearest);
+        let wanted = jet.value + way.dot(jet.gradient + 0.5 * jet.hessian.apply(way));
+        assert!((f64::from(value[k]) - wanted).abs() < 1e-4 * wanted.abs(), "{p}: {} {wanted}", value[k]);
+        assert!((gradient[k].as_dvec3() - jet.gradient).dot(way).abs() < 1e-3 * way.length_squared());
+    }
+}
+
+#[test]
+fn a_surface_that_the_border_cuts_at_all_angles_is_refined() {
+    let middle = DVec3::splat(31.685);
+    let waves = |p: DVec3| {
+        let a = (p - middle) * (core::f64::consts::TAU * 2.2 / 64.0);
+        let [sines, cosines] = [a.map(libm::sin), a.map(libm::cos)];
+        let gradient = dvec3(
+            cosines.x * cosines.y - sines.z * sines.x,
+            cosines.y * cosines.z - sines.x * sines.y,
+            cosines.z * cosines.x - sines.y * sines.z,
+        );
+        let value = sines.x * cosines.y + sines.y * cosines.z + sines.z * cosines.x;
+        value / (gradient.length() * core::f64::consts::TAU * 2.2 / 64.0).max(1e-9)
+    };
+    let image = image_of([64; 3], |p| blurred(waves(p)));
+    for count in [5_000, 20_000] {
+        let settings = Settings { method: Method::Refined, ..Settings::with_count(count) };
+        let sample = sample(image.at(450.0).expect("a surface"), &settings).expect("a sample");
+        assert!(sample.report().warnings.is_empty(), "{count}: {:?}", sample.report().warnings);
+        // As marching cubes count on the voxels.
+        assert_eq!(sample.mesh().topology.euler(), -51, "{count}");
+    }
+}
+
+#[test]
 fn otsu_parts_two_peaks_in_their_middle() {
     let two = image_of([8, 8, 8], |p| if p.x < 4.0 { 10.0 } else { 30.0 });
     assert!((two.otsu() - 20.0).abs() < 0.2, "{}", two.otsu());
@@ -387,6 +444,11 @@ fn a_mask_is_smoothed_no_more_than_a_label() {
         .collect();
     let mask = Image::new([32; 3], mask).expect("an image");
     assert_eq!(mask.width_against_noise(0.5), 1.0);
+    for (spacing, width) in [([0.7; 3], 1.0), ([1.0, 1.0, 3.0], 1.9), ([3.0, 1.0, 2.0], 1.1)] {
+        let thick = mask.clone().with_spacing(spacing).expect("spacings");
+        assert_eq!(thick.width_against_steps(), width, "{spacing:?}");
+        assert!(thick.width_against_noise(0.5) <= width, "{spacing:?}");
+    }
     // An edge that is steep for the step between two values needs none.
     let steep = image_of([32; 3], |p| (blurred((p - 15.3).length() - 10.0) / 9.0).round());
     let voxels: Vec<u8> =

@@ -119,6 +119,7 @@ impl<'f> MethodUnderWay<'f> {
             let mut cover = Cover::default();
             own.hand_over(&mut cover);
             let mut evaluator = field.evaluator(surface.frame);
+            evaluator.continue_beyond();
             let mut memory = ProbeMemory { evaluations: cover.evaluations, ..ProbeMemory::default() };
             let probe = Probe::new(&mut *evaluator, &mut memory);
             let mut task = Task { surface: &surface, settings, probe, pace: own };
