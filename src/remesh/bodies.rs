@@ -1,13 +1,14 @@
 //! Takes a mesh apart whose closed pieces may intersect or touch each other: each becomes a field
 //! by itself, and the mesh is their union.
 
-use super::edges::Edges;
+use super::edges::ends_of;
 use super::mesh::volume;
 use super::patches::flood;
 use super::tree::Tree;
 use super::{Function, MeshError, MeshField, MeshKind, MeshOptions, MeshSolid, TriangleMesh};
 use crate::field::union;
-use crate::math::{Bounds, NONE};
+use crate::math::{Bounds, Forest, NONE};
+use core::f64::consts::PI;
 use glam::DVec3;
 
 /// Largest number of bodies that are united: evaluating their union at a point evaluates every body
@@ -18,14 +19,9 @@ impl MeshSolid {
     /// The closed pieces as solids of their own, each with the cavities in it; none if their boxes
     /// are apart, if there are too many, or if a piece is open.
     pub(super) async fn bodies(&self) -> Option<Vec<Self>> {
-        let (mesh, edges) = (&*self.mesh, &*self.edges);
-        let is_limit: Vec<bool> = (0..edges.len()).map(|edge| edges.sides(edge).len() != 2).collect();
-        let of_face = flood(mesh.faces().len(), edges, &is_limit);
-        let count = of_face.iter().max().map_or(0, |&last| last as usize + 1);
-        let mut pieces: Vec<Vec<[u32; 3]>> = vec![Vec::new(); count];
-        for (face, &piece) in mesh.faces().iter().zip(&of_face) {
-            pieces[piece as usize].push(*face);
-        }
+        let mesh = &*self.mesh;
+        let pieces = self.closed_pieces()?;
+        let count = pieces.len();
         let volumes: Vec<f64> = pieces.iter().map(|faces| volume(mesh.vertices(), faces.iter())).collect();
         let outer: Vec<usize> = (0..count).filter(|&piece| volumes[piece] > 0.0).collect();
         let boxes: Vec<Bounds> = outer
@@ -34,8 +30,7 @@ impl MeshSolid {
             .collect();
         let are_apart =
             boxes.iter().enumerate().all(|(k, own)| boxes[..k].iter().all(|other| own.is_apart_from(other)));
-        let is_closed = |faces: &Vec<[u32; 3]>| Edges::new(faces).count(|sides| sides != 2) == 0;
-        if are_apart || outer.len() > MOST || !pieces.iter().all(is_closed) {
+        if are_apart || outer.len() > MOST {
             return None;
         }
         let corners = |piece: usize| -> Vec<[DVec3; 3]> {
@@ -56,6 +51,84 @@ impl MeshSolid {
             bodies.push(body.mended().await.ok()?.with_edges_along(&marks));
         }
         Some(bodies)
+    }
+
+    /// The faces of each closed piece; none if a piece is open. Where more than two faces share an
+    /// edge, those go on into each other that enclose a part of the inside.
+    fn closed_pieces(&self) -> Option<Vec<Vec<[u32; 3]>>> {
+        let (mesh, edges) = (&*self.mesh, &*self.edges);
+        let is_limit: Vec<bool> = (0..edges.len()).map(|edge| edges.sides(edge).len() != 2).collect();
+        let part_of = flood(mesh.faces().len(), edges, &is_limit);
+        let count = part_of.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut forest = Forest::new(count);
+        for edge in (0..edges.len()).filter(|&edge| is_limit[edge]) {
+            for [opening, closing] in self.around(edge, &part_of)? {
+                forest.join(opening, closing);
+            }
+        }
+        let roots: Vec<u32> = part_of.iter().map(|&part| forest.find(part)).collect();
+        let mut pieces: Vec<Vec<[u32; 3]>> = vec![Vec::new(); count];
+        for (face, &root) in mesh.faces().iter().zip(&roots) {
+            pieces[root as usize].push(*face);
+        }
+        pieces.retain(|faces| !faces.is_empty());
+        Some(pieces)
+    }
+
+    /// The pairs of parts between whose faces at an edge the inside lies; none if the faces do not
+    /// come in such pairs. A part with two faces there makes its own pair.
+    fn around(&self, edge: usize, part_of: &[u32]) -> Option<Vec<[u32; 2]>> {
+        /// Largest angle in radians between faces that two bodies share.
+        const SHARED: f64 = 1e-4;
+        #[derive(Clone, Copy)]
+        struct Own {
+            part: u32,
+            /// Whether the inside ends at the face, in the direction in which angles grow.
+            closes: bool,
+            way: DVec3,
+            angle: f64,
+        }
+        let (mesh, edges) = (&*self.mesh, &*self.edges);
+        let [from, to] = edges.ends(edge).map(|end| mesh.vertices()[end as usize]);
+        let axis = (to - from).normalize_or_zero();
+        let mut own: Vec<Own> = Vec::new();
+        for side in edges.sides(edge) {
+            let corners = mesh.faces()[side.face as usize];
+            let third = mesh.vertices()[corners[(side.side as usize + 2) % 3] as usize];
+            own.push(Own {
+                part: part_of[side.face as usize],
+                closes: ends_of(&corners, side.side) == edges.ends(edge),
+                way: (third - from).reject_from_normalized(axis),
+                angle: 0.0,
+            });
+        }
+        own.sort_by_key(|face| face.part);
+        let is_pair = |faces: &[Own]| matches!(faces, [a, b] if a.closes != b.closes);
+        let mut rest: Vec<Own> = own
+            .chunk_by(|a, b| a.part == b.part)
+            .filter(|faces| !is_pair(faces))
+            .flatten()
+            .copied()
+            .collect();
+        let Some(first) = rest.first().map(|face| face.way) else { return Some(Vec::new()) };
+        for face in &mut rest {
+            face.angle = libm::atan2(face.way.dot(axis.cross(first)), face.way.dot(first));
+            if face.angle < -0.5 * SHARED {
+                face.angle += 2.0 * PI;
+            }
+        }
+        rest.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+        // Where two bodies share a face, one ends there and the other one begins.
+        for shared in rest.chunk_by_mut(|a, b| b.angle - a.angle < SHARED) {
+            shared.sort_by_key(|face| !face.closes);
+        }
+        let opening = rest.iter().position(|face| !face.closes)?;
+        rest.rotate_left(opening);
+        let pair = |pair: &[Own]| match pair {
+            [a, b] if !a.closes && b.closes => Some([a.part, b.part]),
+            _ => None,
+        };
+        rest.chunks(2).map(pair).collect()
     }
 
     /// These faces as a mesh of their own, in the coordinates of the given mesh.

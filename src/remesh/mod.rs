@@ -175,9 +175,10 @@ pub enum MeshError {
 /// Which edges of a mesh stay sharp.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MeshEdges {
-    /// Edges whose faces meet at 30° or more, if the mesh is closed and such edges form curves. A
-    /// scan or a smooth shape keeps no edges. If a mesh consists of up to 32 closed bodies whose
-    /// boxes overlap, each is judged by itself, and the edges at which they meet stay sharp.
+    /// Edges whose faces meet at 30° or more, if the mesh is closed and such edges form curves; all
+    /// edges of a patch with hardly more than corners on its border, as of a coarse model. A scan
+    /// or a smooth shape keeps no edges. If a mesh consists of up to 32 closed bodies whose boxes
+    /// overlap, each is judged by itself, and the edges at which they meet stay sharp.
     #[default]
     Auto,
     /// Edges whose faces meet at this angle or more, in degrees.
@@ -334,7 +335,7 @@ impl MeshSolid {
             MeshEdges::Angle(angle) => Some(angle),
             MeshEdges::Rounded => None,
             MeshEdges::Auto if self.has_marks() => Some(DEFAULT_EDGE_ANGLE),
-            MeshEdges::Auto => Patches::new(&self, DEFAULT_EDGE_ANGLE.to_radians(), faces, PI)
+            MeshEdges::Auto => Patches::new(&self, DEFAULT_EDGE_ANGLE.to_radians(), false, (faces, PI))
                 .are_of_part()
                 .then_some(DEFAULT_EDGE_ANGLE),
         };
@@ -350,7 +351,8 @@ impl MeshSolid {
         // A border that was smoothed has no corners.
         let is_smoothed = walled.as_ref().is_some_and(|walled| walled.is_smoothed);
         let turn = if is_smoothed { PI } else { DEFAULT_EDGE_ANGLE.to_radians() };
-        let patches = Patches::new(solid, angle, faces, turn).with_corners(solid);
+        let keeps_coarse = edges == MeshEdges::Auto && angle < PI;
+        let patches = Patches::new(solid, angle, keeps_coarse, (faces, turn)).with_corners(solid);
         pause().await;
         let of_surface =
             |crease: &&patches::Crease| !crease.patches.iter().any(|&patch| patches.is_wall(patch));

@@ -67,8 +67,18 @@ impl Shared {
         let mut value = |patch: u32| self.functions[patch as usize].at(p).value;
         for (end, place) in crease.ends.into_iter().zip(self.segments[found.triangle as usize]) {
             let Ok(at) = corners.binary_search_by_key(&end, |corner| corner.vertex) else { continue };
-            if q.distance_squared(place) <= corners[at].near * corners[at].near {
-                return corners[at].rule.taken(&mut value).0;
+            let corner = &corners[at];
+            match &corner.rule {
+                Some(rule) if q.distance_squared(place) <= corner.near * corner.near => {
+                    return rule.taken(&mut value).0;
+                }
+                // Nearest to the corner itself f has the sign of the mesh and vanishes nowhere.
+                None if q == place => {
+                    let is_outside = corner.normal.dot(p - place) > 0.0;
+                    let patches = corner.patches.iter().copied().map(Rule::Patch);
+                    return Rule::of(is_outside, patches.collect()).taken(&mut value).0;
+                }
+                _ => {}
             }
         }
         let rule = Rule::of(crease.is_convex, crease.patches.map(Rule::Patch).to_vec());

@@ -31,7 +31,12 @@ pub(super) struct Corner {
     pub(super) vertex: u32,
     /// Within this distance any of its patches may give f.
     pub(super) near: f64,
-    pub(super) rule: Rule,
+    /// The rule by which they do; none if minima and maxima of the patches do not have the inside
+    /// of the mesh there.
+    pub(super) rule: Option<Rule>,
+    pub(super) patches: Vec<u32>,
+    /// The mean of the normals around the vertex.
+    pub(super) normal: DVec3,
 }
 
 /// The patches of a mesh.
@@ -62,8 +67,14 @@ pub(super) struct Patches {
 impl Patches {
     /// Divides a mesh into patches along edges whose faces meet at `angle` or more, in radians, and
     /// along the edges where the faces from number `walls` on meet the others; walls among each
-    /// other where the border turns by `turn` or more.
-    pub(super) fn new(solid: &MeshSolid, angle: f64, walls: usize, turn: f64) -> Self {
+    /// other where the border turns by `turn` or more. `keeps_coarse` divides patches that are too
+    /// coarse for curves into their planes.
+    pub(super) fn new(
+        solid: &MeshSolid,
+        angle: f64,
+        keeps_coarse: bool,
+        (walls, turn): (usize, f64),
+    ) -> Self {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let normals: Vec<DVec3> = mesh.area_vectors().map(DVec3::normalize_or_zero).collect();
         let mut is_sharp = sharp_edges(edges, &normals, angle);
@@ -71,6 +82,9 @@ impl Patches {
         let planes = Planes::new(solid, &normals);
         planes.add_lone_bends(edges, &mut is_sharp);
         bridge(mesh, edges, &mut is_sharp);
+        if keeps_coarse {
+            planes.add_coarse_bends(edges, &mut is_sharp);
+        }
         sharpen_walls(edges, &normals, walls, turn, &mut is_sharp);
         let is_flat = planes.are_flat(solid, &is_sharp);
         let of_face = flood(normals.len(), edges, &is_sharp);
@@ -149,8 +163,7 @@ impl Patches {
     }
 
     /// Finds the corners, where three or more creases meet, and for each the minima and maxima of
-    /// its patches' functions that give f. A corner without such a rule is left out; the nearest
-    /// crease decides there.
+    /// its patches' functions that give f, if there are some.
     fn find_corners(&self, solid: &MeshSolid, normals: &[DVec3]) -> Vec<Corner> {
         let (mesh, edges) = (&*solid.mesh, &*solid.edges);
         let mut at_vertex: Vec<(u32, u32)> =
@@ -164,6 +177,11 @@ impl Patches {
         let meetings = || at_vertex.chunk_by(|a, b| a.0 == b.0).filter(|own| own.len() > 2);
         let places: Vec<[DVec3; 3]> = meetings().map(|own| [mesh.vertices()[own[0].0 as usize]; 3]).collect();
         let places = Tree::new(&places);
+        let segments = self.creases.iter().map(|crease| {
+            let [a, b] = crease.ends.map(|end| mesh.vertices()[end as usize]);
+            [a, b, b]
+        });
+        let creases = Tree::new(&segments.collect::<Vec<_>>());
         let mut corners = Vec::new();
         for (number, own) in (0..).zip(meetings()) {
             let vertex = own[0].0;
@@ -199,14 +217,20 @@ impl Patches {
             });
             let shortest = lengths.fold(f64::INFINITY, f64::min);
             let is_inside = |way: DVec3| solid.is_below(place + 0.1 * shortest * way);
-            if let Some(rule) = Rule::around(&around, is_inside) {
-                let next =
-                    places.nearest_of(place, self.near * self.near / (NEAR_CORNER * NEAR_CORNER), |k| {
-                        k != number
-                    });
-                let near = next.map_or(self.near, |next| NEAR_CORNER * libm::sqrt(next.distance_sq));
-                corners.push(Corner { vertex, near, rule });
-            }
+            // A rule holds for the corner alone: not as far as the next corner, nor another crease.
+            let most = self.near / NEAR_CORNER;
+            let next = places.nearest_of(place, most * most, |k| k != number);
+            let beside =
+                creases.nearest_of(place, most * most, |k| !self.creases[k as usize].ends.contains(&vertex));
+            let next = [next, beside].into_iter().flatten().map(|found| found.distance_sq);
+            let near = next.reduce(f64::min).map_or(self.near, |next| NEAR_CORNER * libm::sqrt(next));
+            corners.push(Corner {
+                vertex,
+                near,
+                rule: Rule::around(&around, is_inside),
+                patches: around.iter().map(|own| own.0).collect(),
+                normal: around.iter().map(|own| own.1).sum(),
+            });
         }
         corners
     }
@@ -360,6 +384,47 @@ impl Planes {
         });
         let lone: Vec<usize> = lone.collect();
         lone.into_iter().for_each(|edge| is_sharp[edge] = true);
+    }
+
+    /// Makes all bends of a patch sharp if most of the vertices on its border are corners, until
+    /// there is no such patch. The border of a curved patch is divided as the patch is, and has
+    /// vertices between its corners. Without them the faces are those of a coarse model, some of
+    /// whose angles are above the least one of an edge and others below.
+    fn add_coarse_bends(&self, edges: &Edges, is_sharp: &mut [bool]) {
+        loop {
+            let of_face = flood(self.of_face.len(), edges, is_sharp);
+            let sharp: Vec<usize> = (0..edges.len()).filter(|&edge| is_sharp[edge]).collect();
+            let mut ends: Vec<u32> = sharp.iter().flat_map(|&edge| edges.ends(edge)).collect();
+            ends.sort_unstable();
+            let is_corner =
+                |vertex: u32| ends.get(ends.partition_point(|&own| own < vertex) + 2) == Some(&vertex);
+            let mut borders: Vec<(u32, u32)> = Vec::new();
+            for &edge in &sharp {
+                for side in edges.sides(edge) {
+                    borders.extend(edges.ends(edge).map(|end| (of_face[side.face as usize], end)));
+                }
+            }
+            borders.sort_unstable();
+            borders.dedup();
+            let is_coarse =
+                |own: &[(u32, u32)]| 2 * own.iter().filter(|own| is_corner(own.1)).count() > own.len();
+            let mut is_divided = vec![false; of_face.len()];
+            for own in borders.chunk_by(|a, b| a.0 == b.0).filter(|own| is_coarse(own)) {
+                is_divided[own[0].0 as usize] = true;
+            }
+            let mut is_done = true;
+            for edge in 0..edges.len() {
+                let patch = edges.sides(edge).first().map(|side| of_face[side.face as usize]);
+                let is_inner = !is_sharp[edge] && self.is_bent[edge];
+                if is_inner && patch.is_some_and(|patch| is_divided[patch as usize]) {
+                    is_sharp[edge] = true;
+                    is_done = false;
+                }
+            }
+            if is_done {
+                return;
+            }
+        }
     }
 
     /// Which faces are flat, by the widths of their planes: twice the area divided by the length of

@@ -7,7 +7,7 @@ use super::tree::Tree;
 use super::{MeshError, TriangleMesh};
 use crate::field::formula::CHANNELS;
 use crate::field::{IntoField, Value};
-use crate::math::{Bounds, IndexTable, counted, hash};
+use crate::math::{Bounds, Forest, IndexTable, counted, hash};
 use crate::slices::{self, pause};
 use core::cell::OnceCell;
 use glam::DVec3;
@@ -343,9 +343,12 @@ fn merged(mesh: &TriangleMesh, width: f64) -> (Vec<DVec3>, (usize, Vec<[u32; 3]>
     (kept, (merged, faces))
 }
 
-/// The faces that have an area, without duplicates.
+/// The faces that have an area, without duplicates. Of two with the same corners and opposite
+/// orientations both are kept if they are the [wall](walls) between two bodies.
 fn kept(vertices: &[DVec3], faces: Vec<[u32; 3]>, width: f64, repairs: &mut MeshRepairs) -> Vec<[u32; 3]> {
     let (mut table, mut sorted, mut kept) = (IndexTable::default(), Vec::<[u32; 3]>::new(), Vec::new());
+    // The second face of each pair, if there is one.
+    let mut backs: Vec<Option<[u32; 3]>> = Vec::new();
     for face in faces {
         let [a, b, c] = face.map(|corner| vertices[corner as usize]);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -359,14 +362,61 @@ fn kept(vertices: &[DVec3], faces: Vec<[u32; 3]>, width: f64, repairs: &mut Mesh
         key.sort_unstable();
         let fresh = sorted.len();
         let index = table.find_or_add(hash(key.map(u64::from)), fresh, |k| sorted[k] == key);
-        if index == Some(fresh as u32) {
-            sorted.push(key);
-            kept.push(face);
-        } else {
-            repairs.doubled += 1;
+        match index.map(|index| index as usize).filter(|&index| index != fresh) {
+            None => {
+                sorted.push(key);
+                kept.push(face);
+                backs.push(None);
+            }
+            Some(index) if backs[index].is_none() && !runs_alike(&kept[index], &face) => {
+                backs[index] = Some(face);
+            }
+            Some(_) => repairs.doubled += 1,
+        }
+    }
+    let is_wall = walls(&kept, &backs);
+    for (back, is_wall) in backs.into_iter().zip(is_wall) {
+        match back {
+            Some(back) if is_wall => kept.push(back),
+            Some(_) => repairs.doubled += 1,
+            None => {}
         }
     }
     kept
+}
+
+/// Whether two faces with the same corners have the same orientation.
+fn runs_alike(face: &[u32; 3], other: &[u32; 3]) -> bool {
+    (0..3).any(|side| ends_of(other, side) == ends_of(face, 0))
+}
+
+/// Which of the faces that have a back are the wall between two bodies: along its border two other
+/// faces meet it at every edge. The two sides of a leaf end at a border of their own, and a second
+/// side of some faces of a body ends at one face.
+fn walls(faces: &[[u32; 3]], backs: &[Option<[u32; 3]>]) -> Vec<bool> {
+    if backs.iter().all(Option::is_none) {
+        return vec![false; faces.len()];
+    }
+    let edges = Edges::new(faces);
+    let mut forest = Forest::new(faces.len());
+    let (mut meets_others, mut is_wrong) = (vec![false; faces.len()], vec![false; faces.len()]);
+    let doubled =
+        |edge: usize| edges.sides(edge).iter().map(|side| side.face).filter(|&f| backs[f as usize].is_some());
+    for edge in 0..edges.len() {
+        let lone = edges.sides(edge).len() - doubled(edge).count();
+        for face in doubled(edge) {
+            meets_others[face as usize] |= lone > 0;
+            is_wrong[face as usize] |= lone % 2 == 1;
+        }
+        let own: Vec<u32> = doubled(edge).collect();
+        own.array_windows().for_each(|&[a, b]| forest.join(a, b));
+    }
+    let mut roots = vec![[false; 2]; faces.len()];
+    for face in 0..faces.len() {
+        let root = &mut roots[forest.find(face as u32) as usize];
+        *root = [root[0] | meets_others[face], root[1] | is_wrong[face]];
+    }
+    (0..faces.len() as u32).map(|face| roots[forest.find(face) as usize] == [true, false]).collect()
 }
 
 /// Divides a face with a border side at the border vertices that lie on that side. Returns the

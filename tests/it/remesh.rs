@@ -362,6 +362,61 @@ fn bodies_that_intersect_or_touch_are_united() {
 }
 
 #[test]
+fn bodies_that_share_whole_faces_are_united_with_their_edges() {
+    let cube = cuboid([1.0; 3]);
+    // The top and the bottom of the helper's boxes have other diagonals than a turned box.
+    let turned_over = moved(&cube, |p| dvec3(p.z, p.x, p.y));
+    let beside = |shape: &Shape, by: DVec3| moved(shape, |p| p + by);
+    for way in DVec3::AXES {
+        for other in [&cube, &turned_over, &moved(&cube, |p| dvec3(1.0 - p.x, 1.0 - p.y, p.z))] {
+            let what = format!("cubes beside each other along {way}");
+            let (field, made) = remeshed(&joined(cube.clone(), &beside(other, way)), 2_000, &what);
+            assert!(matches!(field.kind(), MeshKind::Union { bodies: 2, .. }), "{what}: {:?}", field.kind());
+            check(&made, (2, 12, 2.0), 1e-4, &what);
+        }
+    }
+    let corner =
+        joined(joined(cube.clone(), &beside(&turned_over, DVec3::X)), &beside(&turned_over, DVec3::Y));
+    let (_, made) = remeshed(&corner, 2_000, "three cubes around an edge");
+    check(&made, (2, 18, 3.0), 1e-4, "three cubes around an edge");
+    // Two sides of one surface are no wall between bodies.
+    let two_sided = joined(cube.clone(), &turned(&cube));
+    assert_eq!(solid_of(&two_sided).repairs().doubled, 12);
+}
+
+#[test]
+fn coarse_models_keep_their_facets() {
+    // A ball of 32 faces with a rough surface: its angles lie below and above those of edges, and
+    // hollows and bulges meet at its corners.
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
+    let mut vertices = axes.to_vec();
+    let mut faces = Vec::new();
+    let mut middles = Vec::new();
+    let mut between = |a: u32, b: u32, vertices: &mut Vec<DVec3>| {
+        let key = (a.min(b), a.max(b));
+        let known = middles.iter().position(|&own| own == key);
+        known.unwrap_or_else(|| {
+            middles.push(key);
+            vertices.push((vertices[a as usize] + vertices[b as usize]).normalize());
+            middles.len() - 1
+        }) as u32
+            + 6
+    };
+    for (x, y, z) in (0..8).map(|k| (3 * (k & 1), 1 + 3 * (k >> 1 & 1), 2 + 3 * (k >> 2))) {
+        let is_odd = [x, y, z].iter().filter(|&&corner| corner > 2).count() % 2 == 1;
+        let [a, b, c] = if is_odd { [x, z, y] } else { [x, y, z] };
+        let [d, e, f] = [(a, b), (b, c), (c, a)].map(|(from, to)| between(from, to, &mut vertices));
+        faces.extend([[a, d, f], [d, b, e], [f, e, c], [d, e, f]]);
+    }
+    let rough = |(k, p): (usize, &DVec3)| *p * (1.0 + 0.14 * libm::sin(5.0 * k as f64));
+    let shape: Shape = (vertices.iter().enumerate().map(rough).collect(), faces);
+    let volume = solid_of(&shape).mesh().volume();
+    let (field, made) = remeshed(&shape, 3_000, "coarse ball");
+    assert!(matches!(field.kind(), MeshKind::Parts { patches: 32, edges: 48, .. }), "{:?}", field.kind());
+    check(&made, (2, 48, volume), 1e-4, "coarse ball");
+}
+
+#[test]
 fn a_body_that_intersects_itself_is_rounded() {
     // A corner of a box is drawn out through the opposite side.
     let folded = moved(&cuboid([1.0; 3]), |p| if p == DVec3::ONE { dvec3(0.4, 0.3, -0.5) } else { p });

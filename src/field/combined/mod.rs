@@ -92,8 +92,19 @@ pub fn intersection<K>(solids: impl IntoFields<K>) -> Combined {
 }
 
 fn folded<K>(solids: impl IntoFields<K>, rule: Rule) -> Combined {
-    let join = |a, b| -> Arc<dyn Field> { Arc::new(Combination::new(rule, vec![a, b])) };
-    Combined(solids.into_fields().into_iter().reduce(join).expect("a combination has at least one solid"))
+    let mut fields = solids.into_fields();
+    assert!(!fields.is_empty(), "a combination has at least one solid");
+    // A balanced tree: a point of one solid then passes few of the others, and labels stay small.
+    while fields.len() > 1 {
+        let join = |pair: &[Arc<dyn Field>]| -> Arc<dyn Field> {
+            match pair {
+                [one] => Arc::clone(one),
+                both => Arc::new(Combination::new(rule, both.to_vec())),
+            }
+        };
+        fields = fields.chunks(2).map(join).collect();
+    }
+    Combined(fields.swap_remove(0))
 }
 
 /// The difference of two solids: max(a, −b), which is negative where a is and b is not. See
