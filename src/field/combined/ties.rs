@@ -50,13 +50,16 @@ impl CombinationEvaluator<'_> {
     }
 
     /// Whether the surfaces of both parts may pass through a cell without being parallel, as those
-    /// of f and −f are.
+    /// of f and −f are. Parts that have several branches there may be parallel in the middle only.
     fn may_be_tied(&mut self, cell: &Bounds) -> bool {
         let reach = 0.5 * SLACK * cell.diagonal();
         let slopes = [0, 1].map(|k: usize| self.parts[k].value_and_gradient(cell.middle()));
         let [(_, u), (_, v)] = slopes;
-        slopes.iter().all(|(value, gradient)| value.abs() <= reach * gradient.length())
-            && u.cross(v).length_squared() > PARALLEL * PARALLEL * u.length_squared() * v.length_squared()
+        let are_near = slopes.iter().all(|(value, gradient)| value.abs() <= reach * gradient.length());
+        let sine_sq = PARALLEL * PARALLEL * u.length_squared() * v.length_squared();
+        are_near
+            && (u.cross(v).length_squared() > sine_sq
+                || (0..2).any(|part| self.branches_of(part, cell).is_none_or(|own| own.len() > 1)))
     }
 
     /// The pairs of branches, one of each part, that may meet without an edge in cells where the
