@@ -213,8 +213,8 @@ pub trait Evaluator: super::MaybeSend + super::MaybeSync {
     fn jet(&mut self, p: DVec3) -> Jet;
 
     /// Lets [`values`](Evaluator::values), [`gradients`](Evaluator::gradients) and
-    /// [`hessians`](Evaluator::hessians) continue f smoothly beyond the border of its domain, if the
-    /// field can. The box of a run may end at that border, and fronts grow beyond the box.
+    /// [`hessians`](Evaluator::hessians) continue f smoothly beyond the border of its domain, if
+    /// the field can. The box of a run may end at that border, and fronts grow beyond the box.
     fn continue_beyond(&mut self) {}
 
     /// f and ∇f at each point in double precision.
