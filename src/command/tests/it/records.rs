@@ -7,6 +7,7 @@ use marching_particles::run::Value;
 use marching_particles::{
     Bounds, Formula, GapPolicy, Pattern, Radius, Run, Sample, Settings, Spacing, gallery, offset, sample,
 };
+use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
@@ -29,7 +30,7 @@ fn samples() -> Vec<(Sample, Vec<&'static str>)> {
     let of = |field: Formula, settings: &Settings| sample(field, settings).expect("particles");
     let cushion = formula("x^2 + |y|^k + z^2 = 0.3").with("k", 2.5).expect("a parameter");
     let gyroid = || gallery::find("gyroid").expect("a surface");
-    let cell = gyroid().field().repeated_in(&gyroid().bounds);
+    let cell = formula("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)").repeated_in(&Bounds::cube(PI));
     let share = Settings::with_radius(Radius::Share(0.02));
     let egg = formula("x^2 + 2y^2 + z^2 = 1");
     let mut steps = small.seeded(7).refined();
@@ -94,7 +95,18 @@ fn samples() -> Vec<(Sample, Vec<&'static str>)> {
                 "H=(k_1 + k_2)/2",
             ],
         ),
-        (of(cell, &share), vec!["gyroid", "--closed", "--periodic", "--radius", "2%"]),
+        (
+            of(cell, &share),
+            vec![
+                "sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)",
+                "--box",
+                "3.141592653589793",
+                "--closed",
+                "--periodic",
+                "--radius",
+                "2%",
+            ],
+        ),
         (
             of(gyroid().field().thickened(0.6), &share.in_box(gyroid().bounds)),
             vec!["gyroid", "--thickness", "0.6", "--radius", "2%"],
