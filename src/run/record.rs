@@ -187,7 +187,8 @@ impl FileRecord {
 
 impl ValueText {
     /// The columns that formulas gave; a record cannot hold functions.
-    fn of(added: &[NamedValues]) -> Vec<Self> {
+    #[must_use]
+    pub fn of(added: &[NamedValues]) -> Vec<Self> {
         let text =
             |own: &NamedValues| own.formula.clone().map(|formula| Self { name: own.name.clone(), formula });
         added.iter().filter_map(text).collect()
