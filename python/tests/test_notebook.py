@@ -1,6 +1,7 @@
 """The notebook runs, and prints what stands in it.
 
-``UPDATE_GOLDEN=1`` writes what it prints, after a change that is meant to alter it.
+``UPDATE_GOLDEN=1`` writes what it prints, after a change that is meant to alter it, and the picture
+of its functions with edges in README.md.
 """
 
 import contextlib
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 NOTEBOOK = Path(__file__).parents[1] / "triangles.ipynb"
+PICTURE = Path(__file__).parents[2] / "docs/images/functions.webp"
 TAKES = "the notebook takes it: python/notebook.txt"
 
 
@@ -40,10 +42,14 @@ def test_the_notebook_runs_and_prints_what_stands_in_it():
     for figure in drawn:
         figure.canvas.draw()
         assert np.asarray(figure.canvas.buffer_rgba()).std() > 1
-    assert len(drawn) == 2
+    assert len(drawn) == 3
+    for solid in names["solids"].values():
+        edges = np.sort(solid.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
     if os.environ.get("UPDATE_GOLDEN") == "1":
         for cell, outputs in zip(cells, found):
             cell["outputs"] = outputs
         text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
         NOTEBOOK.write_text(text, encoding="utf-8")
+        drawn[-1].savefig(PICTURE, dpi=96, transparent=True)
     assert [cell["outputs"] for cell in cells] == found

@@ -413,11 +413,11 @@ impl Planes {
                 is_divided[own[0].0 as usize] = true;
             }
             let mut is_done = true;
-            for edge in 0..edges.len() {
+            for (edge, is_sharp) in is_sharp.iter_mut().enumerate() {
                 let patch = edges.sides(edge).first().map(|side| of_face[side.face as usize]);
-                let is_inner = !is_sharp[edge] && self.is_bent[edge];
+                let is_inner = !*is_sharp && self.is_bent[edge];
                 if is_inner && patch.is_some_and(|patch| is_divided[patch as usize]) {
-                    is_sharp[edge] = true;
+                    *is_sharp = true;
                     is_done = false;
                 }
             }

@@ -397,7 +397,7 @@ fn coarse_models_keep_their_facets() {
         let known = middles.iter().position(|&own| own == key);
         known.unwrap_or_else(|| {
             middles.push(key);
-            vertices.push((vertices[a as usize] + vertices[b as usize]).normalize());
+            vertices.push((vertices[a as usize] + vertices[b as usize]).normalize_or_zero());
             middles.len() - 1
         }) as u32
             + 6

@@ -4,8 +4,9 @@
  *
  * Writes into docs/images, each with a light and a dark ground: page (the whole page), sizes
  * (adaptive sampling and models from points), meshes (refined runs as meshes), solids (sharp
- * edges), remesh (triangle meshes before and after sampling), shells (whose thickness is a formula), moved (a film of particles that follow a surface)
- * and levels (generation levels growing).
+ * edges), scans (three-dimensional images), remesh (triangle meshes before and after sampling),
+ * shells (whose thickness is a formula), moved (a film of particles that follow a surface) and
+ * levels (generation levels growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -79,6 +80,13 @@ const SOLIDS = [
     ...(k < 4 ? { colour: 'level', draw: 'discs' } : { ...MESH_VIEW, colour: 'normal', marks: false }),
     camera: { yaw: 0.5, pitch: 0.55, fit: true },
   },
+}));
+
+/** What the strip of scans shows: the images of the gallery's group of that name. */
+const SCANS = ['scan-bone', 'scan-bodies', 'scan-benzene', 'scan-salt'].map((surface) => ({
+  surface,
+  settings: { ...MESH_SETTINGS, count: 8000, method: 'refined' },
+  view: { ...MESH_VIEW, colour: 'normal', edges: false, marks: false, camera: { yaw: 0.5, pitch: 0.4, fit: true } },
 }));
 
 /** How the two rows of triangle meshes are sampled and drawn; the triangles above are as flat as they are in the file. */
@@ -386,6 +394,7 @@ async function film(name, scenes) {
 await strip('sizes', SIZES);
 await strip('meshes', MESHES);
 await strip('solids', SOLIDS, 4);
+await strip('scans', SCANS);
 await remeshed();
 await strip('shells', SHELLS);
 await film('moved', [tanglecubeSplits, ellipsoidIsPulled]);
