@@ -335,11 +335,9 @@ impl MeshSolid {
             MeshEdges::Angle(angle) => Some(angle),
             MeshEdges::Rounded => None,
             MeshEdges::Auto if self.has_marks() => Some(DEFAULT_EDGE_ANGLE),
-            MeshEdges::Auto => {
-                let is_small = self.mesh.vertices().len() < scan::FEWEST_VERTICES;
-                let patches = Patches::new(&self, DEFAULT_EDGE_ANGLE.to_radians(), is_small, (faces, PI));
-                patches.are_of_part().then_some(DEFAULT_EDGE_ANGLE)
-            }
+            MeshEdges::Auto => Patches::new(&self, DEFAULT_EDGE_ANGLE.to_radians(), false, (faces, PI))
+                .are_of_part()
+                .then_some(DEFAULT_EDGE_ANGLE),
         };
         if angle.is_none() && !is_rimmed && !self.has_marks() {
             return self.into_scan(smooth).await;

@@ -5,7 +5,7 @@ use super::MeshSolid;
 use super::patch_function::{PatchFunction, Slope};
 use super::patches::Patches;
 use super::rule::Rule;
-use super::tree::{Tree, nearest_on};
+use super::tree::Tree;
 use crate::field::{Evaluator, Facts, Field, Frame, Jet, Pieces, Piecewise, Within, edges};
 use crate::math::{Bounds, Sym3};
 use crate::slices::{Work, pause};
@@ -58,12 +58,9 @@ impl Shared {
     fn taken(&self, q: DVec3, patch: u32, is_continued: bool, p: DVec3) -> u32 {
         let Patches { creases, corners, near, .. } = &self.patches;
         let is_own = |k: u32| {
-            let crease = &creases[k as usize];
-            let [a, b] = self.segments[k as usize];
-            let reach = self.reach(&crease.patches);
-            crease.patches.contains(&patch)
-                && !(is_continued && crease.patches.iter().any(|&own| self.patches.is_wall(own)))
-                && nearest_on(q, [a, b, b]).distance_squared(q) <= reach * reach
+            let patches = creases[k as usize].patches;
+            patches.contains(&patch)
+                && !(is_continued && patches.iter().any(|&own| self.patches.is_wall(own)))
         };
         let Some(found) = self.creases.nearest_of(q, near * near, is_own) else { return patch };
         let crease = creases[found.triangle as usize];
@@ -72,7 +69,7 @@ impl Shared {
             let Ok(at) = corners.binary_search_by_key(&end, |corner| corner.vertex) else { continue };
             let corner = &corners[at];
             match &corner.rule {
-                Some(rule) if q.distance(place) <= corner.near.min(self.reach(&corner.patches)) => {
+                Some(rule) if q.distance_squared(place) <= corner.near * corner.near => {
                     return rule.taken(&mut value).0;
                 }
                 // Nearest to the corner itself f has the sign of the mesh and vanishes nowhere.
@@ -86,16 +83,6 @@ impl Shared {
         }
         let rule = Rule::of(crease.is_convex, crease.patches.map(Rule::Patch).to_vec());
         rule.taken(&mut value).0
-    }
-
-    /// Distance from the place where these patches meet in the mesh within which their smooth
-    /// surfaces meet. Planes meet in the mesh itself: elsewhere the nearest face gives f.
-    fn reach(&self, patches: &[u32]) -> f64 {
-        /// Multiple of the heights of the surfaces above the faces. At an angle of 30° they meet
-        /// beside the edge by twice as much.
-        const BULGES: f64 = 8.0;
-        let bulges = patches.iter().map(|&patch| self.functions[patch as usize].bulge());
-        (FLAT * self.bounds.diagonal() + BULGES * bulges.sum::<f64>()).min(self.patches.near)
     }
 
     fn label(&self, p: DVec3, is_continued: bool) -> u32 {

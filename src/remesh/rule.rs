@@ -7,7 +7,7 @@ const MOST: usize = 5;
 /// Number of directions in which a rule is compared with the mesh.
 const DIRECTIONS: u32 = 200;
 /// Least share of directions that must agree. Faces of curved patches leave their tangent planes.
-const AGREED: f64 = 0.98;
+const AGREED: f64 = 0.9;
 
 /// Which of the patches' functions gives f.
 #[derive(Clone, Debug, PartialEq)]

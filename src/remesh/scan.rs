@@ -17,8 +17,6 @@ use glam::{DVec3, Vec3};
 const CELL: f64 = 0.8;
 /// Fewest cells along the longest side of the mesh.
 const FEWEST: f64 = 96.0;
-/// Fewest vertices of a scan. A mesh with fewer is a part, whose corners are not noise.
-pub(super) const FEWEST_VERTICES: usize = 1_000;
 /// Most cells of the grid. These take some seconds, and 100 MB.
 const MOST: f64 = 4e6;
 /// Margin around the mesh, in cells, for the Gaussian and for a surface that bulges.
@@ -354,13 +352,15 @@ fn neighbours(block: [usize; 3], count: [usize; 3]) -> impl Iterator<Item = [usi
 /// above the mean of its neighbours is compared with theirs; on a smooth surface these heights are
 /// nearly equal.
 fn noise(mesh: &TriangleMesh, edges: &Edges) -> f64 {
+    /// Fewest vertices of a scan. A mesh with fewer is a part, whose corners are not noise.
+    const FEWEST: usize = 1_000;
     /// The median of the absolute value of a standard normal variable.
     const MEDIAN: f64 = 0.674_489_750_196_081_7;
     /// Standard deviation of this measure divided by that of the noise, for six neighbours: a
     /// vertex has the weight 1.17, its six neighbours about −0.39, and the twelve beyond them 0.05.
     const GAIN: f64 = 1.5;
     let count = mesh.vertices().len();
-    if count < FEWEST_VERTICES {
+    if count < FEWEST {
         return 0.0;
     }
     let mut normal = vec![DVec3::ZERO; count];
