@@ -357,8 +357,8 @@ impl TieSearch<'_> {
         meets
     }
 
-    /// What counts for a choice for which no place is found anywhere. A product is split only if its
-    /// factors cross: unsplit, it shows where they touch.
+    /// What counts for a choice for which no place is found anywhere. A product is split only if
+    /// its factors cross: unsplit, it shows where they touch.
     fn meet_in_doubt(&self, id: Id) -> Meet {
         if self.products.contains(&id) { Meet::Tangent } else { Meet::Sharp }
     }
