@@ -1,7 +1,7 @@
 //! Gaussians against noise, and estimates of the noise of an image.
 
 use super::{Image, ImageError};
-use crate::math::median;
+use crate::math::{median, sort_numbers};
 use crate::slices::{self, LIGHT, Meter};
 use core::ops::Range;
 use std::collections::VecDeque;
@@ -29,7 +29,7 @@ const SCANNED: usize = 64;
 /// The length that counts as a voxel: the spacing of the coarser in-plane axis. The slices of a
 /// scan lie across the axis with the largest spacing.
 pub(super) fn in_plane(mut spacing: [f64; 3]) -> f64 {
-    spacing.sort_by(f64::total_cmp);
+    sort_numbers(&mut spacing);
     spacing[1]
 }
 

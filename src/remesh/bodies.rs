@@ -7,7 +7,7 @@ use super::patches::flood;
 use super::tree::Tree;
 use super::{Function, MeshError, MeshField, MeshKind, MeshOptions, MeshSolid, TriangleMesh};
 use crate::field::union;
-use crate::math::{Bounds, Forest, NONE};
+use crate::math::{Bounds, Forest, NONE, key_of, sort_by_key};
 use core::f64::consts::PI;
 use glam::DVec3;
 
@@ -102,7 +102,7 @@ impl MeshSolid {
                 angle: 0.0,
             });
         }
-        own.sort_by_key(|face| face.part);
+        sort_by_key(&mut own, |face| u64::from(face.part));
         let is_pair = |faces: &[Own]| matches!(faces, [a, b] if a.closes != b.closes);
         let mut rest: Vec<Own> = own
             .chunk_by(|a, b| a.part == b.part)
@@ -117,10 +117,10 @@ impl MeshSolid {
                 face.angle += 2.0 * PI;
             }
         }
-        rest.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+        sort_by_key(&mut rest, |face| key_of(face.angle));
         // Where two bodies share a face, one ends there and the other one begins.
         for shared in rest.chunk_by_mut(|a, b| b.angle - a.angle < SHARED) {
-            shared.sort_by_key(|face| !face.closes);
+            sort_by_key(shared, |face| u64::from(!face.closes));
         }
         let opening = rest.iter().position(|face| !face.closes)?;
         rest.rotate_left(opening);

@@ -4,7 +4,7 @@ use super::edges::{Edges, ends_of};
 use super::rule::Rule;
 use super::tree::Tree;
 use super::{MeshSolid, TriangleMesh};
-use crate::math::NONE;
+use crate::math::{NONE, sort_pairs};
 use glam::DVec3;
 
 /// Distance from an edge within which either of its patches may give f, divided by the diagonal.
@@ -404,7 +404,7 @@ impl Planes {
                     borders.extend(edges.ends(edge).map(|end| (of_face[side.face as usize], end)));
                 }
             }
-            borders.sort_unstable();
+            sort_pairs(&mut borders);
             borders.dedup();
             let is_coarse =
                 |own: &[(u32, u32)]| 2 * own.iter().filter(|own| is_corner(own.1)).count() > own.len();

@@ -4,7 +4,7 @@ use super::cell::{FacePair, Image};
 use super::ladder::CreaseLadder;
 use super::meeting::{ASIDE, FADED, Meeting};
 use super::{Crease, Creases, ONE_CORNER};
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_pairs};
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use core::ops::Range;
@@ -251,7 +251,7 @@ impl CreaseParticles {
             patches.into_iter().map(move |patch| (patch, k))
         };
         let mut rows: Vec<(u32, u32)> = self.list.iter().zip(0..).flat_map(of_particle).collect();
-        rows.sort_unstable();
+        sort_pairs(&mut rows);
         rows.dedup();
         let mut first: Vec<Option<u32>> = vec![None; self.list.len()];
         let mut along = Vec::with_capacity(rows.len());
