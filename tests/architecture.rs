@@ -174,6 +174,7 @@ const ROOMS: [Room; 6] = [
             ("kernel", &[]),
             ("otsu", &[]),
             ("smooth", &["voxels"]),
+            ("border", &["smooth"]),
             ("filter", &["smooth"]),
             ("bricks", &["filter"]),
             ("bounds", &["bricks", "kernel"]),

@@ -7,7 +7,8 @@ use crate::runs::session;
 use glam::DVec3;
 use marching_particles::Warning;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Doubt, Sampling, Search, Settings, Unsampled};
+use marching_particles::sampler::{Doubt, Method, Sampling, Search, Settings, Unsampled};
+use marching_particles::session::Session;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -446,4 +447,32 @@ fn of_bodies_with_edges_none_is_missing_without_a_word() {
         }
         all
     });
+}
+
+#[test]
+fn a_later_run_on_a_surface_begins_with_the_witnesses_of_the_first() {
+    // One ball lies between the nodes of the survey.
+    let two = ("min(norm(x,y,z) - 0.7, norm(x - 0.93, y - 0.93, z - 0.93) - 0.01) = 0", 1.0);
+    let gyroid = ("sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x) = 0", 6.3);
+    for (formula, half) in [two, gyroid] {
+        let front = settings!(radius_share: 0.004, method: Method::Front; ..Settings::default());
+        let other = settings!(method: Method::Refined, seed: 3; ..front);
+        let run = |session: &mut Session, settings: &Settings| {
+            session.start(settings).expect("valid settings");
+            let mut steps = 0;
+            while session.run.step(4_096).stop_reason.is_none() {
+                steps += 1;
+            }
+            let report = session.report();
+            (steps, format!("{} {:?} {}", report.digest, report.proof, report.growth.components_seeded))
+        };
+        let begun = || session(formula, Bounds::cube(half));
+        let (mut session, mut fresh) = (begun(), begun());
+        let (steps, found) = run(&mut session, &front);
+        let later = run(&mut session, &other);
+        assert_eq!(later.1, run(&mut fresh, &other).1, "{formula}: another method and seed");
+        let (fewer, again) = run(&mut session, &front);
+        assert_eq!(again, found, "{formula}: the same settings");
+        assert!(fewer < steps, "{formula}: {fewer} steps after {steps}, without a search");
+    }
 }

@@ -548,38 +548,6 @@ fn a_field_that_stays_is_surveyed_once_and_sampled_alike() {
 }
 
 #[test]
-fn a_later_run_on_a_surface_begins_with_the_witnesses_of_the_first() {
-    // One ball lies between the nodes of the survey.
-    let two = r#"{"formula":"min(norm(x,y,z) - 0.7, norm(x - 0.93, y - 0.93, z - 0.93) - 0.01) = 0","bounds":{"min":[-1,-1,-1],"max":[1,1,1]}}"#;
-    let gyroid = r#"{"surface":"gyroid"}"#;
-    for field in [two, gyroid] {
-        let front = settings!(radius_share: 0.004, method: Method::Front; ..Settings::default());
-        let other = settings!(method: Method::Refined, seed: 3; ..front);
-        let run = |session: &mut Session, settings: &Settings| {
-            session.start(settings).expect("valid settings");
-            let mut steps = 0;
-            while session.run.step(4_096).stop_reason.is_none() {
-                steps += 1;
-            }
-            let report = session.report();
-            (steps, format!("{} {:?} {}", report.digest, report.proof, report.growth.components_seeded))
-        };
-        let begun = || {
-            let mut session = Session::new();
-            session.set_field(&request(field)).expect("a field");
-            session
-        };
-        let (mut session, mut fresh) = (begun(), begun());
-        let (steps, found) = run(&mut session, &front);
-        let later = run(&mut session, &other);
-        assert_eq!(later.1, run(&mut fresh, &other).1, "{field}: another method and seed");
-        let (fewer, again) = run(&mut session, &front);
-        assert_eq!(again, found, "{field}: the same settings");
-        assert!(fewer < steps, "{field}: {fewer} steps after {steps}, without a search");
-    }
-}
-
-#[test]
 fn a_surface_that_was_not_refined_is_warned_of() {
     let refined = settings!(method: Method::Refined, radius_share: 0.01; ..Settings::default());
     let warnings = |surface: &str| {
