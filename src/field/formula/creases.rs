@@ -484,8 +484,8 @@ impl TieSearch<'_> {
         open_to
     }
 
-    /// How the operands of choice `id` meet at a place near the cell where they are tied; none if no
-    /// such place is found.
+    /// How the operands of choice `id` meet at a place near the cell where they are tied; none if
+    /// no such place is found.
     fn meet(
         &self,
         id: Id,
