@@ -23,8 +23,8 @@ const ROOM: f64 = 1.0;
 ///
 /// Near the surface f, ∇f and ∇∇f are those of the spline. In blocks of 8³ voxels that the surface
 /// does not enter, f is interpolated linearly between voxels, which gives it the same sign. f is
-/// defined up to one voxel beyond the outermost centres. A run continues it along straight lines, so
-/// that fronts can grow beyond a border that cuts the surface, and the rim there is clean.
+/// defined up to one voxel beyond the outermost centres. A run continues it along straight lines,
+/// so that fronts can grow beyond a border that cuts the surface, and the rim there is clean.
 ///
 /// An evaluation with gradient takes about 100 ns. The coefficients take about 5 kB for each block
 /// that the surface enters; the voxels are shared by the image and all of its fields.

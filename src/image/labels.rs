@@ -60,9 +60,10 @@ impl Image {
 
     /// The image of the signed distance from the boundary of a label, positive inside, blurred by a
     /// Gaussian of `width` voxels, as that of [`Image::smoothed`]; the [width against
-    /// steps](Image::width_against_steps) is a good start. Its surface is [at](Image::at) 0. The distance is measured to the nearest voxel on the other side, minus
-    /// half a voxel (P. Felzenszwalb & D. Huttenlocher, "Distance Transforms of Sampled Functions",
-    /// Theory of Computing 8, 2012).
+    /// steps](Image::width_against_steps) is a good start. Its surface is [at](Image::at) 0. The
+    /// distance is measured to the nearest voxel on the other side, minus half a voxel (P.
+    /// Felzenszwalb & D. Huttenlocher, "Distance Transforms of Sampled Functions", Theory of
+    /// Computing 8, 2012).
     ///
     /// The boundary of a label is known to half a voxel, and for smooth bodies the surface stays
     /// within that. The Gaussian smooths the steps between voxels: they turn normals by about 4°
@@ -80,11 +81,11 @@ impl Image {
 
     /// The width of the Gaussian that smooths the steps of a label's boundary, in voxels as for
     /// [`Image::smoothed`]: the root mean square of the distances between voxels along the three
-    /// axes, to a tenth. It is 1 for cubes, and 1.9 for voxels of 1 × 1 × 3. Smaller: the steps show
-    /// in the normals. Larger: corners are rounded more.
+    /// axes, to a tenth. It is 1 for cubes, and 1.9 for voxels of 1 × 1 × 3. Smaller: the steps
+    /// show in the normals. Larger: corners are rounded more.
     ///
-    /// A boundary with the normal n has steps of height |n_x| d_x, |n_y| d_y and |n_z| d_z. Over all
-    /// directions their mean square is that of the distances d.
+    /// A boundary with the normal n has steps of height |n_x| d_x, |n_y| d_y and |n_z| d_z. Over
+    /// all directions their mean square is that of the distances d.
     #[must_use]
     pub fn width_against_steps(&self) -> f64 {
         let spacing = self.placement.spacing();

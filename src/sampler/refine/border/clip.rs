@@ -103,8 +103,8 @@ fn cut(net: &mut Net, ground: &mut Ground, spacing: f32, plane: usize) -> Result
 /// The place where the surface over an edge crosses a plane.
 ///
 /// It is looked for from the point in which the edge crosses the plane. Where the surface is almost
-/// parallel to the plane, the way along the plane may be long. Then the edge is halved by a point of
-/// the surface, as often as necessary, with its ends on both sides of the plane.
+/// parallel to the plane, the way along the plane may be long. Then the edge is halved by a point
+/// of the surface, as often as necessary, with its ends on both sides of the plane.
 fn crossing(
     net: &Net,
     ground: &mut Ground,
