@@ -75,8 +75,9 @@ impl MeshSolid {
         Some(pieces)
     }
 
-    /// The pairs of parts between whose faces at an edge the inside lies; none if the faces do not
-    /// come in such pairs. A part with two faces there makes its own pair.
+    /// Pairs of parts that belong to one body, at an edge where more than two faces meet: going
+    /// around the edge, the inside lies between a face of the one part and a face of the other.
+    /// None if the faces do not alternate so. A part with two faces there needs no other one.
     fn around(&self, edge: usize, part_of: &[u32]) -> Option<Vec<[u32; 2]>> {
         /// Largest angle in radians between faces that two bodies share.
         const SHARED: f64 = 1e-4;

@@ -31,8 +31,8 @@ pub(super) struct Corner {
     pub(super) vertex: u32,
     /// Within this distance any of its patches may give f.
     pub(super) near: f64,
-    /// The rule by which they do; none if minima and maxima of the patches do not have the inside
-    /// of the mesh there.
+    /// The minima and maxima of the patches' functions that give f there; none if no combination
+    /// has the inside of the mesh.
     pub(super) rule: Option<Rule>,
     pub(super) patches: Vec<u32>,
     /// The mean of the normals around the vertex.

@@ -31,7 +31,7 @@ pub use record::{FileRecord, SpacingText, ValueText};
 #[doc(hidden)]
 pub use solid::{BeyondPoints, BoxCell, BoxFaces, BoxMode, SolidSettings};
 
-pub(crate) use record::Origin;
+pub(crate) use record::NamedSurface;
 
 pub use crate::extent::Reach;
 pub use crate::field::Value;
@@ -253,13 +253,13 @@ impl<'f, F: Field + 'f> Run<'f, F> {
     }
 
     /// Begins a run in the present box; the survey is kept if field and box are those of the last
-    /// start. `origin` is the surface as its record names it, if a record can.
+    /// start. `named` is the surface as its record names it, if a record can.
     pub(crate) fn begin(
         &mut self,
         settings: &Settings,
-        origin: Option<Origin>,
+        named: Option<NamedSurface>,
     ) -> Result<Start, SettingsError> {
-        self.state.begin(&shared(&self.field), settings, origin)
+        self.state.begin(&shared(&self.field), settings, named)
     }
 
     /// The record of the last start, without what its particles add.
@@ -291,8 +291,8 @@ impl<'f, F: Field + 'f> Run<'f, F> {
         if let Some(bounds) = settings.bounds.filter(|bounds| *bounds != self.bounds()) {
             self.set_bounds(bounds, None);
         }
-        let origin = self.field.formula().map(Origin::of);
-        Ok(self.begin(&settings, origin)?)
+        let named = self.field.formula().map(NamedSurface::of);
+        Ok(self.begin(&settings, named)?)
     }
 
     /// Announces what the caller will do after the run, measure and [join](Run::join) the

@@ -1,4 +1,4 @@
-//! What a file says of its origin: the record, from which a run can be repeated.
+//! The record in a file: the surface and the settings of a run, from which it can be repeated.
 
 use super::{BoxCell, BoxFaces, RunState, SolidSettings};
 use crate::export::RecordText;
@@ -87,7 +87,7 @@ pub struct SpacingText {
 }
 
 /// The surface of a run as its record names it.
-pub(crate) struct Origin {
+pub(crate) struct NamedSurface {
     /// [`FileRecord::surface`].
     pub(crate) surface: Option<String>,
     /// [`FileRecord::model`].
@@ -104,7 +104,7 @@ pub(crate) struct Origin {
     pub(crate) solid: SolidSettings,
 }
 
-impl Origin {
+impl NamedSurface {
     /// A formula, with the solid that is made of its surface.
     pub(crate) fn of(field: &Formula) -> Self {
         let faces = field.closing_box();
@@ -141,7 +141,7 @@ impl FileRecord {
     /// The record of a run that starts now; none if a function of the program gives the spacing,
     /// which a record cannot hold.
     pub(super) fn beginning(
-        origin: Origin,
+        named: NamedSurface,
         bounds: Bounds,
         settings: &Settings,
         spacing: Option<&Spacing>,
@@ -150,7 +150,7 @@ impl FileRecord {
             Some(spacing) => Some(SpacingText::of(spacing)?),
             None => None,
         };
-        let Origin { surface, model, pulls, formula, parameters, faces, solid } = origin;
+        let NamedSurface { surface, model, pulls, formula, parameters, faces, solid } = named;
         Some(Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             digest: String::new(),
@@ -209,8 +209,9 @@ impl SpacingText {
 }
 
 impl RunState<'_> {
-    /// What the record says of the present run; none if a record cannot hold its surface or its
-    /// spacing, or if the particles have followed a moving surface.
+    /// The record of the present run, without the digest and the columns of its particles; none if
+    /// a record cannot hold its surface or its spacing, or if the particles have followed a moving
+    /// surface.
     pub(super) fn beginning(&self) -> Option<FileRecord> {
         let mut record = self.made.clone()?;
         if let (Method::Front, Some(progress)) = (record.settings.method, &self.last) {

@@ -65,7 +65,7 @@ pub struct Sample {
     /// The sheets of the particles, if they were measured.
     sheets: Option<Arc<Sheets>>,
     mesh: OnceLock<Triangulation>,
-    /// What the record says of the run, without the digest and the columns.
+    /// The record, without the digest of the particles and the columns that were added.
     made: Option<FileRecord>,
 }
 

@@ -31,11 +31,11 @@ pub enum BoxFaces {
     Closed,
 }
 
-/// What opposite faces of the box that close a solid have in common.
+/// Whether opposite faces of the box that closes a solid match.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BoxCell {
-    /// Nothing: each face is sampled by itself.
+    /// They need not: each face is sampled by itself.
     #[default]
     Lone,
     /// Opposite faces have the same particles and triangles along every axis on which the surface
@@ -63,7 +63,7 @@ pub struct SolidSettings {
     pub box_mode: BoxMode,
     /// Treatment of the surface at the faces of the box.
     pub box_faces: BoxFaces,
-    /// What opposite faces of the box have in common, if they close the solid.
+    /// Whether opposite faces of the box match, if they close the solid.
     pub box_cell: BoxCell,
     /// Thickness of the shell that is sampled instead of the surface, in the units of the
     /// coordinates; 0 for the surface itself. See [`Formula::thickened_by`].

@@ -3,7 +3,7 @@
 use super::measuring::Measuring;
 use super::mesh::Meshing;
 use super::plan::{Plan, Shares};
-use super::{Error, FieldState, FileRecord, Known, Measured, Origin, RunState, Sample, Start, Warning};
+use super::{Error, FieldState, FileRecord, Known, Measured, NamedSurface, RunState, Sample, Start, Warning};
 use crate::extent::{self, Reach};
 use crate::field::edges::{EdgeTable, KnownField, KnownPieces};
 use crate::field::{Evaluator, Field, Frame};
@@ -92,7 +92,7 @@ impl<'f> RunState<'f> {
             }
         };
         let mut run = Self { reach, spacing, ..Self::new(field, bounds) };
-        let begun = run.begin(field, settings, field.formula().map(Origin::of));
+        let begun = run.begin(field, settings, field.formula().map(NamedSurface::of));
         failure_of(field)?;
         begun?;
         Ok(run)
@@ -103,15 +103,15 @@ impl<'f> RunState<'f> {
         &mut self,
         field: &Arc<dyn Field + 'f>,
         settings: &Settings,
-        origin: Option<Origin>,
+        named: Option<NamedSurface>,
     ) -> Result<Start, SettingsError> {
         settings.validate()?;
         self.bounds.check()?;
         if self.spacing.is_some() && settings.radius.is_some() {
             return Err(SettingsError::RadiusOfVarying);
         }
-        let made = origin
-            .and_then(|origin| FileRecord::beginning(origin, self.bounds, settings, self.spacing.as_ref()));
+        let made = named
+            .and_then(|named| FileRecord::beginning(named, self.bounds, settings, self.spacing.as_ref()));
         let mut settings = settings.in_shares_of(&self.bounds)?;
         if let Some(spacing) = &self.spacing {
             spacing.check_limits()?;

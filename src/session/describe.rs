@@ -279,7 +279,7 @@ const REPORT: &[ReportRow] = &[
         .help("Mean over the triangles of natural neighbours of their smallest angle."),
     row("quality.smallest_angle", "Smallest angle", "Triangles").unit("°").digits(1).up_to("60°").unless("smallest_angle")
         .help("Smallest angle of any triangle of natural neighbours."),
-    row("smallest_angle", "Smallest angle", "Mesh").unit("°").digits(1).up_to("60°")
+    row("smallest_angle", "Smallest angle, with the border", "Mesh").unit("°").digits(1).up_to("60°")
         .help("Smallest angle of any triangle of the mesh, as it stands in its file: those at its border among them, which the other figures leave out."),
     row("quality.triangles_below_30", "Angles below 30°", "Triangles").unit("%").digits(2).down_to("0 %")
         .help("Share of the triangles with an angle below 30°."),

@@ -578,7 +578,7 @@ impl Session {
         self.started = Some(*settings);
         self.spaced = self.spacing.clone();
         self.run.set_spacing(self.next_spacing());
-        self.run.begin(settings, self.origin())
+        self.run.begin(settings, self.named_surface())
     }
 
     /// Lets the particles of the last run, which had these settings, [follow](Run::follow) its

@@ -4,7 +4,7 @@ use super::{BoxFaces, FileRecord, Session, Source};
 use crate::export::{
     self, Bodies, Format, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Vertices,
 };
-use crate::run::Origin;
+use crate::run::NamedSurface;
 use serde::Deserialize;
 
 /// Request for a mesh file.
@@ -34,26 +34,26 @@ impl Session {
 
     /// The present surface as its record names it; none if a file or a function of the program
     /// gives it.
-    pub(super) fn origin(&self) -> Option<Origin> {
+    pub(super) fn named_surface(&self) -> Option<NamedSurface> {
         let choice = &self.fitting.choice;
         let origin = match self.source() {
-            Source::Formula(field) => Origin::of(field),
+            Source::Formula(field) => NamedSurface::of(field),
             Source::Points { info, field, within } => {
                 let (formula, parameters) = match within {
                     Some(formula) => (formula.text.clone(), formula.parameters.as_slice()),
                     None => (String::new(), [].as_slice()),
                 };
-                Origin {
+                NamedSurface {
                     model: Some(info.name.clone()),
                     pulls: field.pulls().to_vec(),
-                    ..Origin::of_text(formula, parameters)
+                    ..NamedSurface::of_text(formula, parameters)
                 }
             }
             #[cfg(feature = "images")]
             Source::Opened(_) => return None,
             Source::Function(_) => return None,
         };
-        Some(Origin {
+        Some(NamedSurface {
             surface: self.surface.map(|surface| surface.id.to_owned()),
             faces: (choice.box_faces == BoxFaces::Closed).then_some(self.clip),
             solid: choice.clone(),

@@ -357,8 +357,9 @@ impl TieSearch<'_> {
         meets
     }
 
-    /// What counts for a choice for which no place is found anywhere. A product is split only if
-    /// its factors cross: unsplit, it shows where they touch.
+    /// How the operands of a choice are taken to meet if no place where they are tied is found: at
+    /// an edge, unless the choice stands for a product. That is split only if its factors cross:
+    /// unsplit, it shows where they touch.
     fn meet_in_doubt(&self, id: Id) -> Meet {
         if self.products.contains(&id) { Meet::Tangent } else { Meet::Sharp }
     }

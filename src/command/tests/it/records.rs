@@ -24,7 +24,7 @@ fn record_of(path: &Path) -> serde_json::Value {
     serde_json::from_str(&json).expect("JSON")
 }
 
-/// The samples of a program, and the arguments by which the command makes them.
+/// Samples that a program makes, each with the arguments of the command that makes the same one.
 fn samples() -> Vec<(Sample, Vec<&'static str>)> {
     let small = Settings::with_count(900);
     let of = |field: Formula, settings: &Settings| sample(field, settings).expect("particles");
