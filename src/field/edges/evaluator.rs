@@ -50,11 +50,17 @@ struct Wall {
     sign: f64,
     /// See [`Side::is_flush`](super::table::Side::is_flush), of the piece and of the one beyond.
     is_flush: [bool; 2],
+    /// The unit vector along the edge, if it fades out somewhere.
+    fades_along: Option<DVec3>,
 }
 
 impl Wall {
     fn new(table: &EdgeTable, site: &Site, label: u32, p: DVec3) -> Option<Self> {
         let k = site.sides.iter().position(|side| side.label == label)?;
+        // Known points of an edge are up to a cell apart: farther along, it has faded out.
+        if site.fades && (p - site.position).dot(site.along).abs() > table.cell {
+            return None;
+        }
         let [own, other] = [site.sides[k], site.sides[1 - k]];
         Some(Self {
             beyond: other.label,
@@ -65,12 +71,16 @@ impl Wall {
             other: table.vertices[other.end as usize],
             sign: site.sign,
             is_flush: [own.is_flush, other.is_flush],
+            fades_along: site.fades.then_some(site.along),
         })
     }
 
     /// The distance of a place from the wall, negative beyond it, and the unit vector that leads
     /// into the region.
     fn depth(&self, p: DVec3) -> (f64, DVec3) {
+        if let Some(along) = self.fades_along {
+            return self.depth_from_parabola(p, along);
+        }
         let [(f, u), (g, v)] = [self.own.slope(p), self.other.slope(p)];
         // Where bodies touch along the sheet of the piece beyond, its negative gives f on the other
         // side of it.
@@ -78,6 +88,21 @@ impl Wall {
         let slope = (u - v) * self.sign;
         let length = slope.length();
         ((f - g) * self.sign / length, slope / length)
+    }
+
+    /// [`Wall::depth`] from the parabola through the site with the direction and the bend of the
+    /// edge. Where the angle of the edge vanishes, beyond its end, the difference of the pieces has
+    /// the other sign.
+    fn depth_from_parabola(&self, p: DVec3, along: DVec3) -> (f64, DVec3) {
+        let [u, v] = [self.own.slope(self.position).1, self.other.slope(self.position).1];
+        let slope = (u - v) * self.sign;
+        let length = slope.length();
+        let bend = [self.own, self.other].map(|piece| along.dot(piece.jet.hessian.apply(along)));
+        let bend = (bend[0] - bend[1]) * self.sign / length;
+        let way = p - self.position;
+        let ahead = way.dot(along);
+        let across = slope / length;
+        (way.dot(across) + 0.5 * bend * ahead * ahead, (across + along * (bend * ahead)).normalize_or_zero())
     }
 }
 
@@ -324,7 +349,8 @@ impl<'a> EdgedEvaluator<'a> {
     }
 
     /// The label of the piece that gives f at a place: that of the piece nearest to f; of several
-    /// equally near ones, that of the nearest vertex. It is [no label](EdgeTable::no_label) where
+    /// equally near ones, that of the nearest vertex, unless they [meet smoothly](super::joins).
+    /// It is [no label](EdgeTable::no_label) where
     /// none of them does, as along a face inside a solid that two of its bodies share.
     fn label_at(&self, p: DVec3) -> u32 {
         let labels = self.table.labels_near(p);
@@ -338,7 +364,9 @@ impl<'a> EdgedEvaluator<'a> {
         let whole = self.field.value(p);
         let jet_of = |&piece: &(u32, u32)| Some((piece.0, self.piece_jet(piece, p, whole)?));
         let pieces: Vec<(u32, Jet)> = labels.iter().filter_map(jet_of).collect();
+        let same = SAME * self.table.size;
         let mut best = (f64::INFINITY, self.table.no_label());
+        let mut tried: Vec<(f64, u32)> = Vec::new();
         for &(label, jet) in &pieces {
             let vertex = labels.iter().find(|piece| piece.0 == label).map_or(0, |piece| piece.1);
             if (jet.value - whole).abs() > self.table.error(vertex, p)
@@ -348,11 +376,14 @@ impl<'a> EdgedEvaluator<'a> {
             }
             let slope = jet.gradient.length();
             let off = if jet.value == whole { 0.0 } else { (jet.value - whole).abs() / slope };
-            if off < best.0 - SAME * self.table.size {
+            tried.push((off, label));
+            if off < best.0 - same {
                 best = (off, label);
             }
         }
-        best.1
+        let equal = tried.iter().filter(|&&(off, label)| label != best.1 && off <= best.0 + same);
+        let mut joined = equal.filter_map(|&(_, label)| self.table.joined_label(p, [best.1, label]));
+        joined.next().unwrap_or(best.1)
     }
 }
 
@@ -452,6 +483,10 @@ impl Pieces for EdgedEvaluator<'_> {
         let own = self.piece.get_or_insert_with(|| Box::new(Self::of(field, table, frame, Some(label))));
         own.label = Some(label);
         &mut **own
+    }
+
+    fn tangent_pairs(&mut self) -> Vec<[u32; 2]> {
+        self.table.tangent_pairs()
     }
 
     fn edge_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {

@@ -11,17 +11,19 @@
 //!    *site*: a point of an edge, with a jet on either side.
 //! 3. *Closer looks*. Around corners, and where the search was inconclusive, it is repeated on a
 //!    grid three times as fine.
-//! 4. *Labels* ([`table`]). All vertices that are joined, directly or by others, have one label.
+//! 4. *Labels* ([`labels`]). All vertices that are joined, directly or by others, have one label.
+//!    Where an edge fades out, nothing but distance divides what it divides elsewhere ([`joins`]).
 //! 5. *Pieces* ([`evaluator`]). Within its region a piece is f. Beyond an edge it is the Taylor
 //!    polynomial around a place a little within.
 //!
-//! The search may miss what is smaller than a cell of the grid, so nothing is proven. An edge that
-//! fades out has one label on both sides and is left out.
+//! The search may miss what is smaller than a cell of the grid, so nothing is proven.
 
 mod cells;
 mod evaluator;
 mod field;
 mod grid;
+mod joins;
+mod labels;
 mod sampled;
 mod search;
 mod table;
@@ -135,7 +137,7 @@ pub(crate) fn edge_cells_between(
             way[usize::from(at_middle[k] != of_point[links[k][0]])] = middles[k];
         }
     }
-    let mut found = EdgeCells::new(width);
+    let mut found = EdgeCells::new(width, table::APART);
     for ([a, b], [from, to]) in links.into_iter().zip(ways) {
         let place = from.midpoint(to);
         if bounds.holds(place) {

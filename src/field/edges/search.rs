@@ -120,6 +120,11 @@ impl<'a> Search<'a> {
         self.vertices.len() as u32 - 1
     }
 
+    /// The unit normals on both sides of a point of an edge.
+    pub(super) fn normals_at(&self, site: &RawSite) -> [DVec3; 2] {
+        site.ends.map(|end| self.vertices[end as usize].slope(site.position).1.normalize_or_zero())
+    }
+
     pub(super) fn distance(&self, a: u32, b: u32) -> f64 {
         self.vertices[a as usize].p.distance(self.vertices[b as usize].p)
     }

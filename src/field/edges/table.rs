@@ -1,15 +1,15 @@
 //! The result of the search: vertices and sites with their labels, and look-ups by place.
 
 use super::cells::Cells;
+use super::joins::Joins;
+use super::labels::Labels;
 use super::sampled::{Sampled, Taylor};
-use super::search::{ALIKE_NEAR, RawSite, Search};
+use super::search::{RawSite, Search};
 use crate::math::newton::step_to_surface;
-use crate::math::{Bounds, Forest, NONE};
+use crate::math::{Bounds, NONE};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Smallest number of vertices of a piece. Fewer have no label.
-const FEWEST: usize = 8;
 /// Distance up to which the sites around a place are taken into account, in cells of the grid.
 const NEAR: f64 = 2.0;
 /// Step of the differences beside an edge, as a share of that of the search. The error of a piece
@@ -39,6 +39,14 @@ pub(super) struct Site {
     pub(super) sides: [Side; 2],
     /// 1 if f is the larger one of the two pieces here, as in a maximum; −1 if it is the smaller.
     pub(super) sign: f64,
+    /// Unit vector along the edge.
+    pub(super) along: DVec3,
+    /// Unit vector across the edge, from the second piece to the first.
+    pub(super) across: DVec3,
+    /// Distance between the unit normals on both sides.
+    pub(super) angle: f64,
+    /// Whether the edge of these pieces fades out somewhere.
+    pub(super) fades: bool,
 }
 
 /// The edges of a surface in a box, with the smooth pieces beside them.
@@ -62,6 +70,8 @@ pub(crate) struct EdgeTable {
     pub(super) cell: f64,
     by_cell: Cells,
     sites_by_cell: Cells,
+    /// How pieces meet between which edges fade out, if there are any.
+    pub(super) joins: Option<Joins>,
 }
 
 impl EdgeTable {
@@ -70,7 +80,8 @@ impl EdgeTable {
         if search.sites.is_empty() {
             return None;
         }
-        let label = labels(&search);
+        let mut labels = Labels::new(&search);
+        let label = &labels.label;
         let (cell, size) = (search.cell, search.f.size);
         let step = BESIDE * search.f.step;
         let (margin, clear) = (MARGIN * step, MARGIN * search.f.step);
@@ -78,7 +89,6 @@ impl EdgeTable {
         let mut sites = Vec::new();
         for site in raw {
             let mut sides = site.ends.map(|end| Side { label: label[end as usize], end, is_flush: false });
-            // Beside an edge that fades out both sides are one piece.
             if sides.iter().any(|side| side.label == NONE) || sides[0].label == sides[1].label {
                 continue;
             }
@@ -95,16 +105,42 @@ impl EdgeTable {
                 let [own, other] = [sides[k], sides[1 - k]].map(|side| &vertices[side.end as usize]);
                 sides[k].is_flush = goes_on_flush(search.f, own, other, site.position);
             }
-            sites.push(Site { position: site.position, sides, sign });
+            let [u, v] = search.normals_at(site);
+            let along = u.cross(v).normalize_or_zero();
+            let [towards_first, towards_second] =
+                sides.map(|side| (vertices[side.end as usize].p - site.position).normalize_or_zero());
+            sites.push(Site {
+                position: site.position,
+                sides,
+                sign,
+                along,
+                across: (towards_first - towards_second).reject_from(along).normalize_or_zero(),
+                angle: u.distance(v),
+                fades: false,
+            });
         }
         if sites.is_empty() {
             return None;
         }
+        let joins = Joins::new(&search, &mut labels, &mut sites);
+        let label = labels.label;
         let count = label.iter().filter(|&&label| label != NONE).max().map_or(0, |last| last + 1);
         let by_cell = Cells::new(cell, vertices.iter().map(|vertex| vertex.p));
         let sites_by_cell = Cells::new(NEAR * cell, sites.iter().map(|site| site.position));
-        let vertices = search.vertices;
-        Some(Self { vertices, label, sites, count, size, step, margin, clear, cell, by_cell, sites_by_cell })
+        Some(Self {
+            vertices: search.vertices,
+            label,
+            sites,
+            count,
+            size,
+            step,
+            margin,
+            clear,
+            cell,
+            by_cell,
+            sites_by_cell,
+            joins,
+        })
     }
 
     /// Number of labels.
@@ -189,6 +225,22 @@ impl EdgeTable {
         ERROR * d.length().max(LEAST * self.cell) * vertex.jet.gradient.length() + bent
     }
 
+    /// Pairs of labels whose pieces meet smoothly, ascending.
+    pub(super) fn tangent_pairs(&self) -> Vec<[u32; 2]> {
+        let mut pairs: Vec<_> =
+            self.joins.iter().flat_map(|joins| joins.places.iter().map(|place| place.0)).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// The label of a place where these two pieces are equal, if they are of one group.
+    pub(super) fn joined_label(&self, p: DVec3, labels: [u32; 2]) -> Option<u32> {
+        let joins = self.joins.as_ref()?;
+        let [group, other] = labels.map(|label| joins.group(label));
+        if group == other { joins.label(p, group?, &self.by_cell) } else { None }
+    }
+
     /// A number that is the label of no piece: of places on none of those that were found.
     pub(super) fn no_label(&self) -> u32 {
         self.count
@@ -223,41 +275,61 @@ impl EdgeTable {
                 site.sides.iter().for_each(|side| add(side.label));
             }
         }
+        if let Some(joins) = &self.joins {
+            for k in joins.by_cell.within(&around) {
+                let (labels, place) = joins.places[k as usize];
+                if around.holds(place) {
+                    labels.into_iter().for_each(&mut add);
+                }
+            }
+        }
         found.sort_unstable();
         found
     }
 
     /// Cells of a box from which the edges can be traced, see [`EdgeCells`].
     pub(crate) fn edge_cells(&self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let mut found = EdgeCells::new(width);
+        let mut found = EdgeCells::new(width, APART);
+        let mut joined = EdgeCells::new(width, JOINS_APART);
         for site in self.sites.iter().filter(|site| bounds.holds(site.position)) {
             found.add(site.sides.map(|side| side.label), site.position);
         }
+        for &(labels, place) in self.joins.iter().flat_map(|joins| &joins.places) {
+            if bounds.holds(place) {
+                joined.add(labels, place);
+            }
+        }
+        found.cells.extend(joined.cells);
         found.cells
     }
 }
+
+/// Smallest distance between cells of one pair, in widths.
+pub(super) const APART: f64 = 6.0;
+/// The same on smooth joins, which may be short.
+const JOINS_APART: f64 = 1.5;
 
 /// Small cells around points of edges, from which these can be traced. Each pair of labels has one
 /// cell within some widths.
 pub(super) struct EdgeCells {
     width: f64,
+    apart: f64,
     known: BTreeMap<[u32; 2], Vec<DVec3>>,
     pub(super) cells: Vec<Bounds>,
 }
 
 impl EdgeCells {
-    pub(super) fn new(width: f64) -> Self {
-        Self { width, known: BTreeMap::new(), cells: Vec::new() }
+    /// Cells of this width, those of one pair at least so many widths `apart`.
+    pub(super) fn new(width: f64, apart: f64) -> Self {
+        Self { width, apart: apart * width, known: BTreeMap::new(), cells: Vec::new() }
     }
 
     pub(super) fn add(&mut self, labels: [u32; 2], place: DVec3) {
-        /// Smallest distance between cells of one pair, in widths.
-        const APART: f64 = 6.0;
         /// Offset of the middle of a cell from the edge, in widths, so that it is on no face of a
         /// solid: beside a corner three pieces are equal there.
         const ASIDE: DVec3 = DVec3::new(0.131, 0.083, -0.057);
         let known = self.known.entry(labels).or_default();
-        if known.iter().all(|p| p.distance(place) > APART * self.width) {
+        if known.iter().all(|p| p.distance(place) > self.apart) {
             known.push(place);
             self.cells.push(Bounds::point(place + self.width * ASIDE).enlarged(0.25 * self.width));
         }
@@ -270,7 +342,7 @@ pub(super) fn close_places(search: &Search<'_>) -> Vec<DVec3> {
     if search.sites.is_empty() {
         return Vec::new();
     }
-    let label = labels(search);
+    let label = Labels::new(search).label;
     let cells = Cells::new(search.cell, search.sites.iter().map(|site| site.position));
     let labels_of = |site: &RawSite| site.ends.map(|end| label[end as usize]);
     let is_close = |site: &&RawSite| {
@@ -310,100 +382,4 @@ fn goes_on_flush(f: &Sampled<'_>, own: &Taylor, other: &Taylor, site: DVec3) -> 
     }
     let aside = u.normalize_or_zero() * (0.1 * BEYOND * f.size);
     f.value(p).abs() <= ZERO * other.slope(p).0.abs() && f.value(p + aside) * f.value(p - aside) > 0.0
-}
-
-/// The label of each vertex. Vertices that are joined, directly or by others, have the same one;
-/// the labels are numbered in the order of their first vertices.
-fn labels(search: &Search<'_>) -> Vec<u32> {
-    let vertices = &search.vertices;
-    let mut forest = joined(search);
-    let mut size = vec![0_usize; vertices.len()];
-    (0..vertices.len() as u32).for_each(|k| size[forest.find(k) as usize] += 1);
-    let (mut number, mut next) = (vec![NONE; vertices.len()], 0);
-    let mut label = Vec::with_capacity(vertices.len());
-    for k in 0..vertices.len() as u32 {
-        let root = forest.find(k) as usize;
-        if size[root] >= FEWEST && number[root] == NONE {
-            number[root] = next;
-            next += 1;
-        }
-        label.push(number[root]);
-    }
-    label
-}
-
-/// The sets of vertices that are joined. Where the angle of an edge vanishes at a point, pieces on
-/// both sides of it look like one there: pairs that would join what meets at an edge elsewhere are
-/// left out, if they are beside an edge. Elsewhere the edge fades out, and both sides are one
-/// piece.
-fn joined(search: &Search<'_>) -> Forest {
-    let vertices = &search.vertices;
-    let mut sets =
-        Sets { forest: Forest::new(vertices.len()), across: BTreeMap::new(), left_out: Vec::new() };
-    for site in &search.sites {
-        for [from, to] in [site.ends, [site.ends[1], site.ends[0]]] {
-            sets.across.entry(from).or_default().push(to);
-        }
-    }
-    // What is beside edges comes first, so that a set knows what is across them.
-    sets.join_all(search, search.beside.clone());
-    sets.join_all(search, search.joined.clone());
-    // No link leads to the vertices beside edges of a strip thinner than a cell, or from a closer
-    // look to the rest: they are joined with neighbours whose jets agree.
-    let cells = Cells::new(search.cell, vertices.iter().map(|vertex| vertex.p));
-    let mut near = Vec::new();
-    for a in search.inserted as u32..vertices.len() as u32 {
-        for b in cells.around(vertices[a as usize].p) {
-            let is_next = b < a && search.distance(a, b) <= 1.5 * search.cell;
-            let are_apart = is_next && sets.forest.find(a) != sets.forest.find(b);
-            if are_apart && search.residual(a, b) <= ALIKE_NEAR {
-                near.push([a, b]);
-            }
-        }
-    }
-    sets.join_all(search, near);
-    let sites = Cells::new(search.cell, search.sites.iter().map(|site| site.position));
-    for [a, b] in sets.left_out {
-        let place = vertices[a as usize].p.midpoint(vertices[b as usize].p);
-        let mut near = sites.around(place).map(|k| search.sites[k as usize].position);
-        if near.all(|site| site.distance(place) > search.cell) {
-            sets.forest.join(a, b);
-        }
-    }
-    sets.forest
-}
-
-/// Disjoint sets of vertices. Two sets with an edge between them must stay apart.
-struct Sets {
-    forest: Forest,
-    /// For each set, by its least vertex, the vertices that are across an edge from one of its own.
-    across: BTreeMap<u32, Vec<u32>>,
-    /// Pairs that were not joined.
-    left_out: Vec<[u32; 2]>,
-}
-
-impl Sets {
-    /// Joins pairs of vertices, the likeliest first.
-    fn join_all(&mut self, search: &Search<'_>, pairs: Vec<[u32; 2]>) {
-        let mut ranked: Vec<_> =
-            pairs.into_iter().map(|pair| (search.residual(pair[0], pair[1]), pair)).collect();
-        ranked.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        for (_, pair) in ranked {
-            let [a, b] = pair.map(|k| self.forest.find(k));
-            if a == b {
-                continue;
-            }
-            let [of_a, of_b] = [a, b].map(|k| self.across.get(&k).map_or(0, Vec::len));
-            let [few, other] = if of_a <= of_b { [a, b] } else { [b, a] };
-            let Self { forest, across, .. } = self;
-            if across.get(&few).is_some_and(|own| own.iter().any(|&k| forest.find(k) == other)) {
-                self.left_out.push(pair);
-                continue;
-            }
-            forest.join(a, b);
-            if let Some(moved) = across.remove(&a.max(b)) {
-                across.entry(a.min(b)).or_default().extend(moved);
-            }
-        }
-    }
 }

@@ -347,6 +347,17 @@ impl Creases {
         }
     }
 
+    /// The nearest corner of two patches ahead of a place, within `reach`.
+    fn corner_ahead(&self, p: DVec3, way: DVec3, patches: [u32; 2], reach: f64) -> Option<usize> {
+        let ahead = self.corners.iter().enumerate().filter(|(_, corner)| {
+            patches.iter().all(|patch| corner.patches.contains(patch))
+                && corner.position.distance(p) <= reach
+                && (corner.position - p).dot(way) > 0.0
+        });
+        let distance = |corner: &Corner| corner.position.distance_squared(p);
+        ahead.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b))).map(|(index, _)| index)
+    }
+
     /// Number of the corner at a position, which is added if it is new.
     fn corner_at(&mut self, position: DVec3, patches: &[u32], slack: f64) -> usize {
         let known = self.corners.iter().position(|corner| corner.position.distance(position) <= slack);

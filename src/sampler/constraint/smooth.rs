@@ -45,6 +45,45 @@ fn normal(probe: &mut Probe, patch: u32, p: DVec3) -> DVec3 {
     branch(probe, patch, p).1.normalize_or_zero()
 }
 
+/// The points at which the patch changes on a circle around a point of a smooth join, seen from
+/// outside: counter-clockwise from the first patch to the second, and back. None if there are other
+/// changes.
+fn changes_around(
+    probe: &mut Probe,
+    pair: [u32; 2],
+    centre: DVec3,
+    normal: DVec3,
+    radius: f64,
+) -> Option<[Option<DVec3>; 2]> {
+    let (a, b) = tangent_frame(normal.as_vec3());
+    let frame = [a.as_dvec3(), b.as_dvec3()];
+    let place = |probe: &mut Probe, angle: f64| {
+        let (sine, cosine) = libm::sincos(angle);
+        landed(probe, centre + (frame[0] * cosine + frame[1] * sine) * radius, radius)
+    };
+    let step = core::f64::consts::TAU / f64::from(POINTS);
+    let mut patches = Vec::with_capacity(POINTS as usize);
+    for k in 0..POINTS {
+        let patch = place(probe, f64::from(k) * step)?.patch;
+        patches.push(patch);
+    }
+    // One arc for each of the patches.
+    let mut found = [None; 2];
+    for k in 0..POINTS {
+        let [here, next] = [k, (k + 1) % POINTS].map(|k| patches[k as usize]);
+        if here == next {
+            continue;
+        }
+        let way = pair.iter().position(|&patch| patch == here)?;
+        if next != pair[1 - way] || found[way].is_some() {
+            return None;
+        }
+        let end = turn([here, next], |share| place(probe, (f64::from(k) + share) * step))?;
+        found[way] = Some(end);
+    }
+    Some(found)
+}
+
 /// The place between a point of the first patch and one of the second where the patch changes. `at`
 /// is the point of the surface after a share of the way.
 fn turn(pair: [u32; 2], mut at: impl FnMut(f64) -> Option<Landed>) -> Option<DVec3> {
@@ -101,38 +140,24 @@ impl Meeting {
         if Meet::of_gradients([u, v]) != Some(Meet::Tangent) {
             return None;
         }
-        let (a, b) = tangent_frame(u.as_vec3());
-        let frame = [a.as_dvec3(), b.as_dvec3()];
-        let radius = AROUND * reach;
-        let place = |probe: &mut Probe, angle: f64| {
-            let (sine, cosine) = libm::sincos(angle);
-            landed(probe, position + (frame[0] * cosine + frame[1] * sine) * radius, radius)
-        };
-        let step = core::f64::consts::TAU / f64::from(POINTS);
-        let mut patches = Vec::with_capacity(POINTS as usize);
-        for k in 0..POINTS {
-            let patch = place(probe, f64::from(k) * step)?.patch;
-            patches.push(patch);
-        }
-        // One arc for each of the patches.
-        let mut found = [None; 2];
-        for k in 0..POINTS {
-            let [here, next] = [k, (k + 1) % POINTS].map(|k| patches[k as usize]);
-            if here == next {
-                continue;
-            }
-            let way = pair.iter().position(|&patch| patch == here)?;
-            if next != pair[1 - way] || found[way].is_some() {
-                return None;
-            }
-            let end = turn([here, next], |share| place(probe, (f64::from(k) + share) * step))?;
-            found[way] = Some(end);
-        }
+        let found = changes_around(probe, pair, position, u, AROUND * reach)?;
         // Counter-clockwise, the change from the first patch to the second lies in the direction
         // that has the first one on its right.
         let [Some(behind), Some(ahead)] = found else { return None };
         let tangent = (ahead - behind).normalize_or_zero();
         Some(Self { position, branches: pair, tangent, sine: 0.0 })
+    }
+
+    /// The next point of a smooth join that has a kink here, `length` away, with these patches on
+    /// its left and right.
+    pub(super) fn around_kink(&self, probe: &mut Probe, sides: [u32; 2], length: f64) -> Option<Self> {
+        let up = normal(probe, sides[0], self.position);
+        let [right, left] = [sides[1], sides[0]];
+        // Counter-clockwise, the right side gives way to the left one ahead.
+        let [position, _] = changes_around(probe, [right, left], self.position, up, length)?;
+        let position = position?;
+        let way = (position - self.position).normalize_or_zero();
+        Some(Self { position, tangent: way, ..*self })
     }
 
     /// The next point of a smooth join, `length` away, with these patches on its left and right.

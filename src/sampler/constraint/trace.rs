@@ -17,6 +17,10 @@ const BISECTIONS: u32 = 30;
 /// so that no walk is endless.
 pub(super) const MOST_STEPS: usize = 20_000;
 
+/// Largest distance, in steps, from the end of a smooth join to that of the crease that fades out
+/// there: where its angle is small, neither is known exactly.
+const AHEAD: f64 = 2.0;
+
 /// Largest number of corners within one step of a walk, one before the other, each of a branch that
 /// gives f at no other.
 const MOST_RETREATS: u32 = 8;
@@ -117,13 +121,20 @@ impl Walk<'_, '_> {
                 self.next(here, direction)
             };
             let Some((next, length)) = next else {
+                if self.start.is_smooth()
+                    && let Some(corner) =
+                        creases.corner_ahead(here, direction, self.start.branches, AHEAD * self.step)
+                {
+                    points.push(creases.corners[corner].position);
+                    return WalkEnd::Corner(corner);
+                }
                 return WalkEnd::Corner(creases.corner_at(here, self.patches, ONE_END * self.step));
             };
-            if (next.tangent.dot(direction) > 0.0) != is_forward {
+            let is_smooth = self.start.is_smooth();
+            if !is_smooth && (next.tangent.dot(direction) > 0.0) != is_forward {
                 let end = self.turn(last, next, direction, is_forward);
                 return self.end_at(creases, [here, end], self.patches, ONE_END, points);
             }
-            let is_smooth = self.start.is_smooth();
             if !is_smooth && !self.is_same_crease(&next, self.step) && !self.is_touched(here, &next) {
                 return self.end_before(creases, here, &next, points);
             }
@@ -148,7 +159,7 @@ impl Walk<'_, '_> {
                 return WalkEnd::Closed;
             }
             left_start |= next.position.distance(origin) > length;
-            direction = if next.tangent.dot(direction) < 0.0 { -next.tangent } else { next.tangent };
+            direction = if is_forward { next.tangent } else { -next.tangent };
             last = next;
             points.push(next.position);
         }
@@ -182,17 +193,18 @@ impl Walk<'_, '_> {
         let [a, b] = self.start.branches;
         let is_first_left = self.are_left.is_some_and(|are_left| are_left[0]) == is_forward;
         let sides = if is_first_left { [a, b] } else { [b, a] };
-        let mut length = self.step;
-        for _ in 0..=HALVINGS {
-            if let Some(mut next) = last.along_smooth_join(self.probe, sides, direction, length) {
-                if !is_forward {
-                    next.tangent = -next.tangent;
-                }
-                return Some((next, length));
-            }
-            length *= 0.5;
+        let mut lengths = core::iter::successors(Some(self.step), |length| Some(0.5 * length));
+        let ahead = lengths.by_ref().take(HALVINGS as usize + 1).find_map(|length| {
+            Some((last.along_smooth_join(self.probe, sides, direction, length)?, length))
+        });
+        let (mut next, length) = ahead.or_else(|| {
+            let length = BESIDE * self.step;
+            Some((last.around_kink(self.probe, sides, length)?, length))
+        })?;
+        if !is_forward {
+            next.tangent = -next.tangent;
         }
-        None
+        Some((next, length))
     }
 
     /// The point, between the last one of the walk and one after it, where the angle between the
