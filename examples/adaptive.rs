@@ -8,7 +8,7 @@ use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let ellipsoid = gallery::find("ellipsoid").ok_or("the gallery has no such surface")?;
-    let settings = Settings::with_count(6_000).adaptive().in_box(ellipsoid.bounds);
+    let settings = Settings::with_count(6_000).adaptive();
 
     let mut run = Run::start(ellipsoid.field(), &settings)?;
     let mut told = 0.0;

@@ -13,10 +13,9 @@
 //! let cushion = sample(surface, &Settings::with_count(2_000))?;
 //! cushion.write(Format::Ply, &mut Vec::new())?;
 //!
-//! // In a given box and by radius. The triangles between the particles form a torus.
+//! // In the box of the gallery and by radius. The triangles between the particles form a torus.
 //! let torus = gallery::find("torus").ok_or("no such surface")?;
-//! let settings = Settings::with_radius(Radius::Share(0.01)).in_box(torus.bounds);
-//! let sample = sample(torus.field(), &settings)?;
+//! let sample = sample(torus.field(), &Settings::with_radius(Radius::Share(0.01)))?;
 //! assert_eq!(sample.mesh().topology.components[0].euler(), 0);
 //! sample.write_mesh(MeshFormat::Glb, &mut Vec::new())?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())

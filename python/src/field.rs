@@ -38,7 +38,7 @@ impl Field {
     fn formula(text: &str, parameters: Vec<(String, f64)>) -> PyResult<Self> {
         let surface = gallery::find(text);
         let mut formula = match surface {
-            Some(surface) => surface.field().for_sampling(),
+            Some(surface) => surface.field(),
             None => Formula::parse(text).map_err(|error| errors::of_formula(&error, text))?,
         };
         for (name, value) in &parameters {

@@ -479,6 +479,7 @@ impl SampleArguments {
 
     /// Fills in from a file's record what was not given on the command line.
     pub(crate) fn complete(&mut self, record: FileRecord) {
+        self.take_even_spacing();
         // A given radius means particles of one size.
         if let (None, Some(text), false) = (&self.spacing, &record.spacing, self.sampling.has_radius()) {
             self.spacing = Some(SpacingOption::Formula(text.formula.clone()));
@@ -493,7 +494,7 @@ impl SampleArguments {
             surface.formula = surface.formula.take().or(Some(record.formula).filter(|text| !text.is_empty()));
             surface.add_parameters(record.parameters);
             self.add_values(record.values);
-            return self.sampling.complete(&record.settings);
+            return self.sampling.complete(&record.settings, self.spacing.is_some());
         }
         if surface.surface.is_none()
             && surface.formula.is_none()
@@ -520,7 +521,7 @@ impl SampleArguments {
             surface.thickness = surface.thickness.take().or(kept.cloned());
             self.add_values(record.values);
         }
-        self.sampling.complete(&record.settings);
+        self.sampling.complete(&record.settings, self.spacing.is_some());
     }
 
     /// Adds the values of a record, except those that the command line names itself.

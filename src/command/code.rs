@@ -22,7 +22,7 @@ pub(crate) fn print(
     let mut session = Session::without_surface();
     choose(&mut session, surface, arguments.quiet)?;
     space(&mut session, spacing)?;
-    let settings_in = |bounds: &_| arguments.sampling.settings_by_length(bounds);
+    let settings_in = |bounds: &_| arguments.sampling.settings(bounds);
     let mut settings = fit(&mut session, &settings_in, false)?;
     let found = session.run.bounds();
     settings.bounds = surface.sampled.filter(|bounds| *bounds != found);

@@ -1,5 +1,6 @@
 //! Errors of the tool, with their messages and exit codes.
 
+use marching_particles::Settings;
 use marching_particles::field::formula::{FormulaErrorKind, Mended};
 use marching_particles::math::{shortest_text, significant};
 use marching_particles::sampler::SettingsError;
@@ -130,6 +131,15 @@ fn refusal(error: &SettingsError) -> String {
         SettingsError::Spacing { value, .. } if !value.is_nan() => return format!("{error} (--spacing-min)"),
         _ => return error.to_string(),
     };
+    // A radius that was given as a length, in the box that was found.
+    if *name == "radius" {
+        let [value, min, max] = [*value, *min, *max].map(significant);
+        let share = Settings::range("radius_share").unwrap_or(0.0..=0.0);
+        let [least, most] = [share.start(), share.end()].map(|&share| percent(share));
+        return format!(
+            "--radius is {value}, but must lie between {least} and {most} of the box diagonal, here {min} and {max}"
+        );
+    }
     let setting = settings().into_iter().find(|setting| setting.name == *name);
     let option = match setting {
         Some(setting) => setting.option(),

@@ -5,14 +5,13 @@ use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
+use marching_particles::Settings;
 use marching_particles::field::formula;
 use marching_particles::field::formula::FormulaErrorKind;
 use marching_particles::math::{Bounds, grouped, shortest_text};
-use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{
     Setting, SettingGroup, SettingKind, SettingValue, SolidSettings, settings, without_effect,
 };
-use marching_particles::{Radius, Settings};
 use serde_json::{Map, Value as Json};
 use std::ops::RangeInclusive;
 
@@ -35,8 +34,8 @@ const PATTERN: &str = "pattern";
 const RADIUS: &str = "radius_share";
 /// The largest slope of the sizes, with or without a curvature.
 const GRADING: &str = "grading";
-/// The limit is raised with the wanted number.
-const MAX_PARTICLES: &str = "max_particles";
+/// The setting that holds a radius as a length, and prevails over the share.
+const LENGTH: &str = "radius";
 
 /// A length on the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,8 +117,8 @@ pub(crate) fn length(text: &str) -> Result<Length, String> {
     }
 }
 
-/// The sampling settings from the options. Lengths become shares of the box's diagonal once the box
-/// is known.
+/// The sampling settings from the options. Lengths, except for the radius, become shares of the
+/// box's diagonal once the box is known.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SamplingOptions {
     values: Map<String, Json>,
@@ -137,16 +136,13 @@ impl SamplingOptions {
     pub(crate) fn settings(&self, bounds: &Bounds) -> Settings {
         let mut values = self.values.clone();
         for (name, length) in &self.lengths {
-            values.insert((*name).to_owned(), length.share(bounds.diagonal()).into());
+            let (name, value) = match (*name, *length) {
+                (RADIUS, Length::Units(length)) => (LENGTH, length),
+                (name, length) => (name, length.share(bounds.diagonal())),
+            };
+            values.insert(name.to_owned(), value.into());
         }
-        let mut settings: Settings =
-            serde_json::from_value(values.into()).expect("clap has checked the values");
-        // A wanted number of particles raises the limit so that they have room.
-        if self.values.contains_key(COUNT) && !self.values.contains_key(MAX_PARTICLES) {
-            let room = (f64::from(settings.count) * COUNT_ROOM).ceil() as u32;
-            settings.max_particles = settings.max_particles.max(room);
-        }
-        settings
+        serde_json::from_value(values.into()).expect("clap has checked the values")
     }
 
     /// Whether a radius was given.
@@ -161,7 +157,7 @@ impl SamplingOptions {
 
     /// Whether a number of particles was given.
     pub(crate) fn is_counted(&self) -> bool {
-        self.values.contains_key(COUNT)
+        self.given.iter().any(|setting| setting.name == COUNT)
     }
 
     /// Requests particles of one size with this spacing.
@@ -173,19 +169,19 @@ impl SamplingOptions {
         self.lengths.push((RADIUS, radius));
     }
 
-    /// Fills in from `settings` what was not given.
-    pub(crate) fn complete(&mut self, settings: &Settings) {
+    /// Fills in from `settings` what was not given. A spacing by a formula, if it `is_spaced`,
+    /// replaces a radius.
+    pub(crate) fn complete(&mut self, settings: &Settings, is_spaced: bool) {
         // A given radius excludes a wanted number and varying sizes.
         if self.has_radius() {
             self.values.entry(SIZE_MODE).or_insert("radius".into());
             self.values.entry(SAMPLING).or_insert(UNIFORM.into());
         }
-        // Room for the wanted number.
-        let is_counted = self.values.contains_key(COUNT);
+        let is_sized = is_spaced || self.has_radius() || self.is_counted() || self.is_adaptive();
         let Ok(Json::Object(known)) = serde_json::to_value(settings) else { return };
         for (name, value) in known {
             let is_length = self.lengths.iter().any(|(given, _)| *given == name);
-            if !(is_length || is_counted && name == MAX_PARTICLES) {
+            if !(is_length || is_sized && name == LENGTH) {
                 self.values.entry(name).or_insert(value);
             }
         }
@@ -212,17 +208,6 @@ impl SamplingOptions {
                 Err(Failure::Usage(format!("--{option} has no effect without {needed}")))
             }
         }
-    }
-
-    /// [`SamplingOptions::settings`], except that a radius given as a length stays a length.
-    pub(crate) fn settings_by_length(&self, bounds: &Bounds) -> Settings {
-        let mut settings = self.settings(bounds);
-        for (name, length) in &self.lengths {
-            if let (&RADIUS, &Length::Units(length)) = (name, length) {
-                settings.radius = Some(Radius::Length(length));
-            }
-        }
-        settings
     }
 
     /// Whether a given length becomes a share of the box in the settings.
@@ -333,9 +318,6 @@ fn help(setting: &Setting) -> String {
     let default = match setting.default {
         _ if [SAMPLING, COUNT, COUNTING].contains(&setting.name) => return help.to_owned(),
         SettingValue::Choice(value) => value.replace('_', "-"),
-        SettingValue::Integer(whole) if setting.name == MAX_PARTICLES => {
-            format!("{}, or a tenth more than --count", grouped(whole as usize))
-        }
         SettingValue::Integer(whole) => grouped(whole as usize),
         SettingValue::Number(share) if setting.is_share() => percent(share),
         SettingValue::Number(number) => shortest_text(number),

@@ -32,12 +32,23 @@ pub(crate) fn units(text: &str) -> Result<f64, String> {
 }
 
 impl SampleArguments {
+    /// Makes a constant spacing a radius, unless other options exclude it.
+    pub(crate) fn take_even_spacing(&mut self) {
+        let is_limited = self.spacing_min.or(self.spacing_max).is_some();
+        if let Some(SpacingOption::Even(length)) = &self.spacing
+            && !(is_limited || self.sampling.is_counted() || self.sampling.is_adaptive())
+        {
+            self.sampling.space_evenly(*length);
+            self.spacing = None;
+        }
+    }
+
     /// The spacing formula. A constant spacing becomes a radius instead, unless sizes also follow
     /// the curvature.
     pub(crate) fn spacing_text(&mut self) -> Result<Option<SpacingText>, Failure> {
+        self.take_even_spacing();
         let (smallest, largest) = (self.spacing_min, self.spacing_max);
         let is_limited = smallest.or(largest).is_some();
-        let is_adaptive = self.sampling.is_adaptive();
         let refused = match &self.spacing {
             None => return Ok(None),
             Some(SpacingOption::Formula(text)) => {
@@ -50,16 +61,12 @@ impl SampleArguments {
                 "--count chooses the distance of particles of one size: leave out --spacing, or give it a \
                  formula"
             }
-            Some(SpacingOption::Even(Length::Share(_))) if is_adaptive => {
+            Some(SpacingOption::Even(Length::Share(_))) => {
                 "beside --adaptive, --spacing takes a length or a formula, not a share of the box diagonal"
             }
-            Some(SpacingOption::Even(Length::Units(length))) if is_adaptive => {
+            Some(SpacingOption::Even(Length::Units(length))) => {
                 let formula = shortest_text(*length);
                 return Ok(Some(SpacingText { formula, smallest, largest }));
-            }
-            Some(SpacingOption::Even(length)) => {
-                self.sampling.space_evenly(*length);
-                return Ok(None);
             }
         };
         Err(Failure::Usage(refused.to_owned()))

@@ -7,7 +7,7 @@ use crate::field::rbf::Pull;
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality::NamedValues;
-use crate::sampler::{Method, Settings, Spacing, StopReason};
+use crate::sampler::{Method, Radius, Settings, SizeMode, Spacing, StopReason};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -109,6 +109,7 @@ impl NamedSurface {
     pub(crate) fn of(field: &Formula) -> Self {
         let faces = field.closing_box();
         Self {
+            surface: field.name().map(str::to_owned),
             faces,
             solid: SolidSettings {
                 box_faces: if faces.is_some() { BoxFaces::Closed } else { BoxFaces::Open },
@@ -165,7 +166,7 @@ impl FileRecord {
             solid,
             spacing,
             values: Vec::new(),
-            settings: Settings { bounds: None, ..*settings },
+            settings: as_given(settings),
         })
     }
 
@@ -182,6 +183,18 @@ impl FileRecord {
     #[must_use]
     pub fn text(&self) -> RecordText {
         RecordText::new(&serde_json::to_string(self).expect("a record is data"))
+    }
+}
+
+/// The settings of a run as a record states them, without the box, which the record has itself. A
+/// length stays a length; a share of the diagonal has one name.
+fn as_given(settings: &Settings) -> Settings {
+    let settings = Settings { bounds: None, ..*settings };
+    match settings.radius {
+        Some(Radius::Share(radius_share)) => {
+            Settings { radius: None, radius_share, size_mode: SizeMode::Radius, ..settings }
+        }
+        _ => settings,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::extent;
 use crate::field::formula::{Formula, Thickness};
-use crate::field::gallery::Surface;
+use crate::field::gallery::{self, Surface};
 use crate::math::Bounds;
 use crate::sampler::SettingsError;
 use core::ops::RangeInclusive;
@@ -129,6 +129,17 @@ impl SolidSettings {
         }
         let solid = self.made_of(field.clone(), None);
         Some(extent::unit_cell(&solid, solid.surface_periods(), &bounds))
+    }
+
+    /// The box of a formula of the [gallery], with its solid. None for another formula, and where
+    /// the box is to be fitted: around a solid that a box closes, and around a shell whose
+    /// thickness is a formula.
+    pub(super) fn box_of(formula: &Formula) -> Option<Bounds> {
+        let surface = gallery::find(formula.name()?)?;
+        let thickness = formula.thickness().cloned().unwrap_or_default();
+        let is_fitted = surface.closed && matches!(thickness, Thickness::Formula(_));
+        let is_own = formula.closing_box().is_none() && !is_fitted;
+        is_own.then(|| Self { thickness, ..Self::default() }.own_box(surface))
     }
 
     /// The box of a surface of the gallery. Around a surface that is closed without its box there

@@ -3,7 +3,10 @@
 use super::measuring::Measuring;
 use super::mesh::Meshing;
 use super::plan::{Plan, Shares};
-use super::{Error, FieldState, FileRecord, Known, Measured, NamedSurface, RunState, Sample, Start, Warning};
+use super::{
+    Error, FieldState, FileRecord, Known, Measured, NamedSurface, RunState, Sample, SolidSettings, Start,
+    Warning,
+};
 use crate::extent::{self, Reach};
 use crate::field::edges::{EdgeTable, KnownField, KnownPieces};
 use crate::field::{Evaluator, Field, Frame};
@@ -83,7 +86,8 @@ impl<'f> RunState<'f> {
         settings: &Settings,
         spacing: Option<Spacing>,
     ) -> Result<Self, Error> {
-        let (bounds, reach) = match settings.bounds {
+        let own = || field.formula().and_then(SolidSettings::box_of);
+        let (bounds, reach) = match settings.bounds.or_else(own) {
             Some(bounds) => (bounds, None),
             None => {
                 let extent = extent::find(field);

@@ -172,8 +172,8 @@ impl<'de> Visitor<'de> for ReadRadius {
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Settings {
-    /// Box that is sampled, in the coordinates of the field; without one it is fitted to the
-    /// surface.
+    /// Box that is sampled, in the coordinates of the field. Without one a surface of the
+    /// [gallery](crate::gallery) has its own, and around others it is fitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
     /// Repulsion radius r of particles of one size. If it is given, `size_mode` and `radius_share`
@@ -226,8 +226,9 @@ pub struct Settings {
     pub gaps: GapPolicy,
     /// Seed of the random choice of the point where the front begins.
     pub seed: u64,
-    /// The run stops when it has placed this many. A wanted count up to this limit may be missed
-    /// upwards like any other.
+    /// The run stops when it has placed this many: a limit on time and memory, by default the
+    /// largest number that is accepted. A wanted count up to this limit may be missed upwards like
+    /// any other.
     pub max_particles: u32,
 }
 
@@ -239,6 +240,9 @@ const MOST_WANTED: f64 = 4e6;
 /// first attempt may place some too many.
 #[doc(hidden)]
 pub const COUNT_ROOM: f64 = 1.1;
+
+/// Largest number of particles of a run.
+const MOST_PARTICLES: u32 = (COUNT_ROOM * MOST_WANTED) as u32;
 
 /// The smallest and the largest radius that are accepted, as shares of the diagonal: on an area of
 /// one squared diagonal they give 29 million particles and 7.
@@ -265,7 +269,7 @@ const NUMBERS: [Number; 11] = [
     // Below, children overlap by half; at 1 they match the particles next to them in a lattice.
     ("match_tolerance", 0.5, 0.9, |s| s.match_tolerance),
     ("seed", 0.0, u64::MAX as f64, |s| s.seed as f64),
-    ("max_particles", 1.0, COUNT_ROOM * MOST_WANTED, |s| s.max_particles.into()),
+    ("max_particles", 1.0, MOST_PARTICLES as f64, |s| s.max_particles.into()),
 ];
 
 impl Default for Settings {
@@ -343,7 +347,7 @@ impl Settings {
     /// The values that `Default` gives. The radius is the smaller one of the paper (§6). With the
     /// chord error most surfaces take about as many particles as the default count, with the
     /// largest curvature more. On a sphere the limits of the radii give 300,000 particles and 340.
-    /// There is room for ten times the default count.
+    /// Every size that is asked for has room.
     pub const DEFAULT: Self = Self {
         bounds: None,
         radius: None,
@@ -365,20 +369,31 @@ impl Settings {
         match_tolerance: 0.7,
         gaps: GapPolicy::Fill,
         seed: 0,
-        max_particles: 200_000,
+        max_particles: MOST_PARTICLES,
     };
 
-    /// Default settings for about `count` particles, met within 3 %; there is room for them.
+    /// Default settings for about `count` particles, met within 3 %.
     #[must_use]
     pub fn with_count(count: u32) -> Self {
-        let room = (f64::from(count) * COUNT_ROOM).ceil() as u32;
-        let max_particles = Self::DEFAULT.max_particles.max(room);
-        Self { size_mode: SizeMode::Count, count, max_particles, ..Self::DEFAULT }
+        Self { size_mode: SizeMode::Count, count, ..Self::DEFAULT }
     }
 
-    /// Default settings for particles with this repulsion radius, with the largest possible room;
-    /// neighbours sit two radii apart. [Adaptive](Self::adaptive) sampling
-    /// refuses them: it takes its radii from the curvature.
+    /// Default settings for particles of one size whose neighbours are this far apart, in the units
+    /// of the coordinates: for a radius of half the length. [`Settings::spaced`] takes a spacing
+    /// that varies.
+    ///
+    /// ```
+    /// use marching_particles::{Radius, Settings};
+    ///
+    /// assert_eq!(Settings::with_spacing(0.1), Settings::with_radius(Radius::Length(0.05)));
+    /// ```
+    #[must_use]
+    pub fn with_spacing(length: f64) -> Self {
+        Self::with_radius(Radius::Length(0.5 * length))
+    }
+
+    /// Default settings for particles with this repulsion radius; neighbours sit two radii apart.
+    /// [Adaptive](Self::adaptive) sampling refuses them: it takes its radii from the curvature.
     ///
     /// ```
     /// use marching_particles::{Radius, Settings, sample};
@@ -390,8 +405,7 @@ impl Settings {
     /// ```
     #[must_use]
     pub fn with_radius(radius: Radius) -> Self {
-        let max_particles = (COUNT_ROOM * MOST_WANTED) as u32;
-        Self { radius: Some(radius), max_particles, ..Self::DEFAULT }
+        Self { radius: Some(radius), ..Self::DEFAULT }
     }
 
     /// Default settings for adaptive sampling in which triangles of neighbours stay within this

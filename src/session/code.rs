@@ -350,10 +350,7 @@ impl Program<'_> {
         if settings.seed != 0 {
             given.push(("seed", settings.seed.to_string()));
         }
-        // The packages themselves make room for the wanted count.
-        let is_needed =
-            |setting: &Setting| setting.name != "max_particles" || settings.size_mode != SizeMode::Count;
-        for setting in self.others().into_iter().filter(is_needed) {
+        for setting in self.others() {
             let value = match setting.default {
                 SettingValue::Number(share) if setting.is_share() => quoted(&percent_text(share), quote),
                 SettingValue::Number(number) => shortest_text(number),

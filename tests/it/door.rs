@@ -538,10 +538,10 @@ fn a_radius_is_a_length_or_a_share_and_makes_room() {
     let fitted = sample(sphere, &Settings::with_radius(Radius::Length(0.02))).unwrap();
     assert!((fitted.report().sizes.radius - 0.02).abs() < 1e-12);
     let shell = Formula::parse("x^2 + y^2 + z^2 = 1").unwrap();
-    let fine = settings!(relax_steps: 0; ..Settings::with_radius(Radius::Length(0.003)));
+    let fine = settings!(relax_steps: 0; ..Settings::with_spacing(0.006));
     let mut run = Run::start(shell, &fine).unwrap();
     while run.step(u32::MAX).stop_reason.is_none() {}
-    assert!(run.count() > Settings::DEFAULT.max_particles as usize);
+    assert!(run.count() > 200_000);
     let error =
         sample(sphere, &Settings::with_radius(Radius::Length(2.0)).in_box(Bounds::cube(1.0))).unwrap_err();
     assert!(error.to_string().starts_with("radius is 2, but must lie between 0.000346"), "{error}");

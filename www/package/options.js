@@ -284,8 +284,7 @@ export function checked(field, options) {
   if (unknown !== undefined) throw new InputError(`${unknown}: there is no such option. ${meant(unknown, KNOWN)}`);
   checkSizes(/** @type {Record<string, unknown>} */ (options));
   const { beyondPoints, bounds, formula, params, spacing, values = {}, measure = true } = options;
-  const { settings: own, given } = settingsOf(/** @type {Record<string, unknown>} */ (options));
-  const settings = { max_particles: 1.1 * MOST, ...own };
+  const { settings, given } = settingsOf(/** @type {Record<string, unknown>} */ (options));
   if (beyondPoints !== undefined && what.cloud === undefined)
     throw new InputError('beyondPoints: for points, beyond which their surface may go on.');
   const ofFormula = OF_FORMULAS.find((name) => options[/** @type {keyof Options} */ (name)]);

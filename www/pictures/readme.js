@@ -4,13 +4,15 @@
  *
  * Writes into docs/images, each with a light and a dark ground: page (the whole page), sizes
  * (adaptive sampling and models from points), meshes (refined runs as meshes), solids (sharp
- * edges), scans (three-dimensional images), shells (whose thickness is a formula), moved (a film of
- * particles that follow a surface) and levels (generation levels growing).
+ * edges), scans (three-dimensional images), remesh (triangle meshes before and after sampling),
+ * shells (whose thickness is a formula), moved (a film of particles that follow a surface) and
+ * levels (generation levels growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 import { animation } from './animation.js';
 import { launch } from './browser.js';
+import { MESH_FILES } from './meshes.js';
 
 /** @import { BrowserContextOptions, Page } from '@playwright/test' */
 
@@ -86,6 +88,14 @@ const SCANS = ['scan-bone', 'scan-bodies', 'scan-benzene', 'scan-salt'].map((sur
   settings: { ...MESH_SETTINGS, count: 8000, method: 'refined' },
   view: { ...MESH_VIEW, colour: 'normal', edges: false, marks: false, camera: { yaw: 0.5, pitch: 0.4, fit: true } },
 }));
+
+/** How the two rows of triangle meshes are sampled and drawn. */
+const REMESH = {
+  settings: { size_mode: 'count', count: 1200, method: 'refined' },
+  view: { ...MESH_VIEW, colour: 'normal', marks: false },
+};
+/** The edges of triangles take room: at {@link LEVEL_SCALE} a file would be twice as large. */
+const REMESH_SCALE = 1;
 
 /** What the strip of shells shows: parts of one gyroid, whose thickness is a number, and then a formula. */
 const SHELLS = [0.6, '0.65 + 0.13z', '1.1 - 0.2 hypot(x, y)', '0.25 + 0.7 smoothstep(-1, 1, x)'].map((thickness) => ({
@@ -222,6 +232,65 @@ async function strip(name, states, columns) {
   }
 }
 
+/**
+ * Replaces the mesh on the page by the triangles of its file. Each has its corners for itself, with its own normal.
+ * @param {Page} page
+ */
+const showFaces = (page) =>
+  page.evaluate(async () => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    const { vertices, faces } = await engine.meshFaces();
+    const { columns } = engine;
+    const count = faces.length;
+    const positions = Float32Array.from(
+      { length: 3 * count },
+      (_, k) => vertices[3 * faces[Math.floor(k / 3)] + (k % 3)],
+    );
+    const normals = new Float32Array(3 * count);
+    for (let first = 0; first < 3 * count; first += 9) {
+      const [a, b, c] = [0, 3, 6].map((k) => [...positions.subarray(first + k, first + k + 3)]);
+      const [u, v] = [b, c].map((end) => end.map((x, axis) => x - a[axis]));
+      const across = [0, 1, 2].map((k) => u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+      const size = Math.hypot(...across);
+      for (let k = 0; k < 9; k += 1) normals[first + k] = across[k % 3] / size;
+    }
+    // Faces without a radius are not drawn.
+    const radii = new Float32Array(count).fill(columns.radii[0]);
+    const levels = new Uint32Array(count);
+    const triangles = Uint32Array.from({ length: count }, (_, k) => k);
+    Object.assign(columns, { count, positions, normals, radii, levels, mesh: { ...columns.mesh, triangles } });
+    engine.zoom(1);
+  });
+
+/** Draws triangle meshes, above as they are in their files and below as they are sampled anew, in both themes. */
+async function remeshed() {
+  if (!isWanted('remesh')) return;
+  for (const theme of /** @type {const} */ (['light', 'dark'])) {
+    const [before, after] = [/** @type {Buffer[]} */ ([]), /** @type {Buffer[]} */ ([])];
+    for (const { name, text, camera } of MESH_FILES) {
+      const page = await open({ viewport: LEVEL_PX, deviceScaleFactor: REMESH_SCALE, colorScheme: theme });
+      await onlyThePicture(page);
+      await page.evaluate(
+        async ({ name, text, wanted }) => {
+          const mp = /** @type {any} */ (window).marchingParticles;
+          await mp.engine.openFile(new File([text], name));
+          const camera = { ...mp.state.view.camera, fit: true, ...wanted.view.camera };
+          await mp.set({ ...wanted, view: { ...wanted.view, camera } });
+          mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+        },
+        { name, text, wanted: { ...REMESH, view: { ...REMESH.view, camera } } },
+      );
+      await atRest(page);
+      after.push(await page.screenshot());
+      await showFaces(page);
+      await atRest(page);
+      before.push(await page.screenshot());
+      await page.close();
+    }
+    await write(`remesh-${theme}.webp`, await webp([...before, ...after], 0.7, MESH_FILES.length));
+  }
+}
+
 /** A share of the film to a share of the way: there and back, slow at both ends. @param {number} share */
 const swing = (share) => (1 - Math.cos(2 * Math.PI * share)) / 2;
 
@@ -336,6 +405,7 @@ await strip('sizes', SIZES);
 await strip('meshes', MESHES);
 await strip('solids', SOLIDS, 4);
 await strip('scans', SCANS);
+await remeshed();
 await strip('shells', SHELLS);
 await film('moved', [tanglecubeSplits, ellipsoidIsPulled]);
 

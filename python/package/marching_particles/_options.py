@@ -27,8 +27,7 @@ def settings_of(options):
     sizes = [name for name in _SIZES if name in options]
     if len(sizes) > 1:
         raise ValueError(f"{' and '.join(sizes)} exclude each other: give one of them")
-    # The package has room for whatever is asked for.
-    settings, lengths, solid = {"max_particles": 4_400_000}, {}, {}
+    settings, lengths, solid = {}, {}, {}
     # The argument that gave each setting.
     given = {}
     if "spacing" in options:

@@ -198,6 +198,8 @@ impl Parameter {
 #[derive(Clone, Debug)]
 pub struct Formula {
     written: Arc<WrittenFormula>,
+    /// Identifier in the gallery.
+    name: Option<&'static str>,
     /// Equation of the same surface that is evaluated instead, if [`Formula::for_sampling`] has
     /// found one.
     simplified: Option<Arc<Equation>>,
@@ -253,6 +255,16 @@ impl Formula {
     /// Any of [`FormulaErrorKind`], with its span in bytes of `text`.
     pub fn parse(text: &str) -> Result<Self, FormulaError> {
         Ok(Self::as_written(text, &[])?.for_sampling())
+    }
+
+    /// Returns the formula as the one of a surface of the gallery.
+    pub(crate) fn named(self, name: &'static str) -> Self {
+        Self { name: Some(name), ..self }
+    }
+
+    /// Identifier of the surface of the gallery whose formula it is.
+    pub(crate) fn name(&self) -> Option<&'static str> {
+        self.name
     }
 
     /// Returns the formula with another value of a parameter. Parameters that [`Formula::parse`]
@@ -313,6 +325,7 @@ impl Formula {
         let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
         Self {
             written: Arc::new(written),
+            name: None,
             simplified: None,
             is_regular: false,
             flush: Arc::default(),

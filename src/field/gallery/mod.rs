@@ -57,7 +57,18 @@ pub struct SurfaceGroup {
 }
 
 impl Surface {
-    /// Parses the formula, with the default values of the parameters.
+    /// The formula for sampling, with the default values of the parameters. It knows its name and
+    /// box: a run whose settings have no box takes place in this one, and the record of its files
+    /// names the surface.
+    ///
+    /// ```
+    /// use marching_particles::{Settings, gallery, sample};
+    ///
+    /// let torus = gallery::find("torus").ok_or("no such surface")?;
+    /// let thin = sample(torus.field().with("r", 0.2)?, &Settings::with_count(1_000))?;
+    /// assert_eq!(thin.bounds(), torus.bounds);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Panics
     ///
@@ -66,6 +77,8 @@ impl Surface {
     pub fn field(&self) -> Formula {
         Formula::as_written(self.formula, self.parameters)
             .unwrap_or_else(|error| panic!("gallery surface `{}`: {error}", self.id))
+            .for_sampling()
+            .named(self.id)
     }
 }
 

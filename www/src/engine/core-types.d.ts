@@ -1358,8 +1358,8 @@ export type Report = {
   /** How the edges were found, if they were searched for in the values of f; none if the field
   * itself says which pieces meet at its edges, and if no edge was found. */
   edges_found: string | null,
-  /** Smooth joins: curves of particles along which patches of the surface meet without an edge;
-  * none if there are none. */
+  /** Number of smooth joins, the curves of particles along which patches of the surface meet
+  * without an edge; `None` on a surface without any. */
   seams: number | null,
   /** Quality of the present particles; none without particles, or if they were not measured. */
   quality: Figures | null,
@@ -1519,7 +1519,7 @@ export type SurfaceEntry = {
   * self-intersections. */
   genus: number | null,
   /** Words by which people look for the surface and that its name, formula and story do not have,
-  * in lower case, with spaces between them. */
+  * in lower case, with spaces between them. Each suggests the surface if it is typed alone. */
   words: string,
   /** Two sentences about the surface. */
   story: string,

@@ -471,7 +471,10 @@ fn each_invalid_argument_has_its_message() {
     assert!(
         fails(2, &["sample", "--adaptive", "--radius-min", "90%"]).contains(&format!("--radius-min {range}"))
     );
-    assert!(fails(2, &["sample", "--radius", "1e-9"]).contains("between 0.01% and 20%"));
+    assert!(
+        fails(2, &["sample", "--radius", "1e-9"])
+            .contains("--radius is 1e-9, but must lie between 0.01% and 20% of the box diagonal, here 0.0")
+    );
     assert!(fails(2, &["sample", "--radius", "1%", "--count", "10"]).contains("cannot be used with"));
     assert!(fails(2, &["sample", "--box", "1,2"]).contains("one, three or six"));
     assert!(fails(2, &["sample", "--box", "1;2;3"]).contains("separated by commas"));
@@ -670,11 +673,11 @@ fn every_setting_is_an_option() {
 #[test]
 fn help_explains_units_defaults_and_examples() {
     let help = stdout(&run(&["sample", "--help"]));
-    for part in ["Formulas:", "Examples:", "Exit codes:", "0.6%", "smin(a,b,k)", "200,000"] {
+    for part in ["Formulas:", "Examples:", "Exit codes:", "0.6%", "smin(a,b,k)", "4,400,000"] {
         assert!(help.contains(part), "no `{part}` in the help");
     }
     // The default limit in the text is the actual one.
-    assert_eq!(marching_particles::sampler::Settings::default().max_particles, 200_000);
+    assert_eq!(marching_particles::sampler::Settings::default().max_particles, 4_400_000);
     assert!(run(&["--version"]).status.success());
     assert_eq!(run(&[]).status.code(), Some(2));
 }

@@ -107,10 +107,7 @@ fn samples() -> Vec<(Sample, Vec<&'static str>)> {
                 "2%",
             ],
         ),
-        (
-            of(gyroid().field().thickened(0.6), &share.in_box(gyroid().bounds)),
-            vec!["gyroid", "--thickness", "0.6", "--radius", "2%"],
-        ),
+        (of(gyroid().field().thickened(0.6), &share), vec!["gyroid", "--thickness", "0.6", "--radius", "2%"]),
     ]
 }
 
@@ -124,15 +121,52 @@ fn the_command_repeats_what_a_program_in_rust_has_saved() {
         let made = command(&[&arguments[..], &["--out", other]].concat());
         assert_eq!(made["digest"], digest(&sample), "{arguments:?}");
         assert_eq!(command(&["--like", path])["digest"], digest(&sample), "{arguments:?}");
-        // A program in Rust says no name of the gallery, a length as it is, and a limit of its own.
-        let [mut by_program, mut by_command] = [&of_program, &of_command].map(|path| record_of(path));
-        for record in [&mut by_program, &mut by_command] {
-            record["surface"].take();
-            let settings = record["settings"].as_object_mut().expect("settings");
-            settings.retain(|name, _| !["radius", "radius_share", "max_particles"].contains(&&**name));
-        }
-        assert_eq!(by_program, by_command, "{arguments:?}");
+        assert_eq!(record_of(&of_program), record_of(&of_command), "{arguments:?}");
     }
+}
+
+#[test]
+fn a_length_stays_a_length_in_the_record_and_what_is_given_beside_it_replaces_it() {
+    let sphere = ["x^2 + y^2 + z^2 = 1", "--box", "1.25"];
+    let sized = |name: &str, size: [&str; 2]| {
+        let path = file(name).to_str().expect("a plain path").to_owned();
+        (command(&[&sphere[..], &size, &["--out", &path]].concat()), path)
+    };
+    let (by_length, length) = sized("length.ply", ["--spacing", "0.16"]);
+    assert_eq!(record_of(length.as_ref())["settings"]["radius"], 0.08);
+    let (by_count, count) = sized("count.ply", ["--count", "700"]);
+    let (by_share, _) = sized("share.ply", ["--radius", "3%"]);
+    for (like, size, made) in [
+        (&length, ["--radius", "3%"], &by_share),
+        (&length, ["--count", "700"], &by_count),
+        (&count, ["--spacing", "0.16"], &by_length),
+        (&count, ["--spacing", "6%"], &by_share),
+        (&count, ["--radius", "0.08"], &by_length),
+    ] {
+        let again = command(&[&["--like", like][..], &size].concat());
+        assert_eq!(again["digest"], made["digest"], "{size:?} beside {like}");
+    }
+    for sizes in [&["--spacing", "0.1 + 0.02 z"][..], &["--adaptive", "--chord-error", "0.05%"]] {
+        let varying = command(&[&["--like", &length][..], sizes].concat());
+        assert!(varying["radius_min"].as_f64() < varying["radius_max"].as_f64(), "{sizes:?}");
+    }
+}
+
+#[test]
+fn a_record_of_former_versions_is_repeated() {
+    // Lengths were shares of the diagonal, and there was room for 200,000 particles.
+    let record = serde_json::json!({
+        "version": "0.1.0", "digest": "", "formula": "x^2 + y^2 + z^2 = 1",
+        "bounds": { "min": [-1.25, -1.25, -1.25], "max": [1.25, 1.25, 1.25] },
+        "settings": { "radius_share": 0.08 / (2.5 * 3_f64.sqrt()), "max_particles": 200_000 },
+    });
+    let path = file("former.json");
+    let document = RecordText::new(&record.to_string()).document().expect("a record");
+    fs::write(&path, document).expect("a file");
+    let again = command(&["--like", path.to_str().expect("a plain path")]);
+    let now = command(&["x^2 + y^2 + z^2 = 1", "--box", "1.25", "--radius", "0.08"]);
+    assert_eq!(again["count"], now["count"]);
+    assert_eq!(again["settings"]["max_particles"], 200_000);
 }
 
 #[test]
