@@ -1,6 +1,6 @@
 //! Functions of which nothing but values is known, with edges.
 
-use crate::black_box_table::{Function, Solid, block, more_solids, solids};
+use crate::black_box_table::{Function, Solid, block, fading_solids, more_solids, smooth_min, solids};
 use crate::cases;
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
 use marching_particles::field::{FnField, PiecewiseFn};
@@ -76,6 +76,47 @@ fn functions_with_edges_are_refined() {
         assert!(sample.report().growth.refined_levels.is_some(), "{name}: {:?}", sample.report().warnings);
         assert!(sample.mesh().topology.is_closed(), "{name}");
     }
+}
+
+#[test]
+fn functions_whose_edges_fade_out_are_closed() {
+    for is_turned in [false, true] {
+        for solid in fading_solids() {
+            check(solid, &Settings::with_count(3_000).in_box(Bounds::cube(1.9)), is_turned);
+        }
+    }
+}
+
+#[test]
+#[ignore = "slow: for cargo xtask test --all"]
+fn most_blocks_that_are_smoothly_joined_to_a_ball_are_closed() {
+    /// A share that was usual when the test was written.
+    const CLOSED: f64 = 0.6;
+    let (mut closed, mut all) = (0, 0);
+    for seed in cases::seeds(40) {
+        let mut random = Pcg32::seed_from_u64(seed);
+        let mut between =
+            |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let half = DVec3::from_array([0; 3].map(|_| between(0.4, 0.8)));
+        let way = dvec3(between(-1.0, 1.0), between(-1.0, 1.0), 1.0).normalize_or_zero();
+        let turn = DMat3::from_axis_angle(way, between(0.0, 3.0));
+        let aside = DVec3::from_array([0; 3].map(|_| between(-1.0, 1.0)));
+        let centre = half * aside / aside.abs().max_element();
+        let (radius, reach) = (between(0.25, 0.6), between(0.1, 0.3));
+        let f = move |p: DVec3| {
+            let p = turn * p;
+            smooth_min(block(p, half), p.distance(centre) - radius, reach)
+        };
+        let settings = Settings::with_count(8_000).in_box(Bounds::cube(1.9));
+        let sample = sample(f, &settings).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        all += 1;
+        if sample.mesh().topology.is_closed() {
+            closed += 1;
+        } else {
+            println!("seed {seed}: {:?}", sample.report().warnings);
+        }
+    }
+    cases::assert_share(closed, all, CLOSED, "blocks that are closed");
 }
 
 /// Largest distance of the particles on creases of a cube from its edges, over its side.

@@ -123,6 +123,33 @@ pub(crate) fn solids() -> Vec<Solid> {
     ]
 }
 
+/// The smooth minimum of two numbers by a polynomial, rounded where they differ by less than `reach`.
+pub(crate) fn smooth_min(a: f64, b: f64, reach: f64) -> f64 {
+    let near = (reach - (a - b).abs()).max(0.0) / reach;
+    a.min(b) - near * near * near * reach / 6.0
+}
+
+/// Solids of which edges fade out.
+pub(crate) fn fading_solids() -> Vec<Solid> {
+    let ball = |p: DVec3| p.distance(dvec3(0.6, 0.5, 0.7)) - 0.5;
+    let at_corner = |p: DVec3| p.distance(DVec3::splat(0.7)) - 0.5;
+    let cube = |p: DVec3| {
+        let q = p.abs() - 0.7;
+        q.max(DVec3::ZERO).length() + q.max_element().min(0.0)
+    };
+    vec![
+        solid("a cube with a ball", (2, 12, 10), None, move |p| smooth_min(cube(p), ball(p), 0.2)),
+        solid("a cube with a ball, by exponentials", (2, 12, 10), None, move |p| {
+            let sum = libm::exp(-20.0 * cube(p)) + libm::exp(-20.0 * at_corner(p));
+            -libm::log(sum) / 20.0
+        }),
+        solid("a ball with a crease", (2, 1, 2), None, |p| {
+            let up = p.z.max(0.0);
+            p.length() - 1.0 + 0.3 * p.x.abs() * up * up
+        }),
+    ]
+}
+
 fn named(name: &'static str, f: impl Fn(DVec3) -> f64 + Send + Sync + 'static) -> (&'static str, Function) {
     (name, Box::new(f))
 }

@@ -19,7 +19,7 @@ pub(super) const MOST_STEPS: usize = 20_000;
 
 /// Largest distance, in steps, from the end of a smooth join to that of the crease that fades out
 /// there: where its angle is small, neither is known exactly.
-const AHEAD: f64 = 2.0;
+const AHEAD: f64 = 4.0;
 
 /// Largest number of corners within one step of a walk, one before the other, each of a branch that
 /// gives f at no other.
