@@ -119,7 +119,7 @@ async fn turn(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
 fn estimate(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
     let components = graph.orient();
     let mut warnings = vec![
-        "The file has no normals: they were estimated from each point's neighbours, and where the surface is thin or \
+        "The points have no normals: they were estimated from each point's neighbours, and where the surface is thin or \
          sparsely sampled they can be wrong."
             .to_owned(),
     ];

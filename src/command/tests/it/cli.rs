@@ -710,7 +710,7 @@ fn points_of_a_file_become_a_surface_that_is_sampled() {
     assert!(words.starts_with("points: cloud.xyz\na surface from 200 centres near "), "{words}");
     assert!(
         words.contains("normals estimated, condition ")
-            && words.contains("\nwarning: The file has no normals"),
+            && words.contains("\nwarning: The points have no normals"),
         "{words}"
     );
 
