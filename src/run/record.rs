@@ -109,7 +109,7 @@ impl NamedSurface {
     pub(crate) fn of(field: &Formula) -> Self {
         let faces = field.closing_box();
         Self {
-            surface: field.name().map(str::to_owned),
+            surface: field.surface().map(|surface| surface.id.to_owned()),
             faces,
             solid: SolidSettings {
                 box_faces: if faces.is_some() { BoxFaces::Closed } else { BoxFaces::Open },

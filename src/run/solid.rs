@@ -2,7 +2,7 @@
 
 use crate::extent;
 use crate::field::formula::{Formula, Thickness};
-use crate::field::gallery::{self, Surface};
+use crate::field::gallery::Surface;
 use crate::math::Bounds;
 use crate::sampler::SettingsError;
 use core::ops::RangeInclusive;
@@ -131,25 +131,30 @@ impl SolidSettings {
         Some(extent::unit_cell(&solid, solid.surface_periods(), &bounds))
     }
 
-    /// The box of a formula of the [gallery], with its solid. None for another formula, and where
-    /// the box is to be fitted: around a solid that a box closes, and around a shell whose
-    /// thickness is a formula.
+    /// The box of a formula of the [gallery](crate::gallery), with its solid. None for another
+    /// formula, and where the box is to be fitted: around a solid that a box closes, and around a
+    /// shell whose thickness is a formula.
     pub(super) fn box_of(formula: &Formula) -> Option<Bounds> {
-        let surface = gallery::find(formula.name()?)?;
+        let surface = formula.surface()?;
         let thickness = formula.thickness().cloned().unwrap_or_default();
         let is_fitted = surface.closed && matches!(thickness, Thickness::Formula(_));
         let is_own = formula.closing_box().is_none() && !is_fitted;
-        is_own.then(|| Self { thickness, ..Self::default() }.own_box(surface))
+        is_own.then(|| Self { thickness, ..Self::default() }.box_around(&surface.bounds, surface.closed))
     }
 
     /// The box of a surface of the gallery. Around a surface that is closed without its box there
     /// is room for a shell of a numeric thickness.
     #[must_use]
     pub fn own_box(&self, surface: &Surface) -> Bounds {
+        self.box_around(&surface.bounds, surface.closed)
+    }
+
+    /// [`SolidSettings::own_box`] of a surface with this box.
+    fn box_around(&self, bounds: &Bounds, is_closed: bool) -> Bounds {
         let room = match self.thickness {
-            Thickness::Number(thickness) if surface.closed => DVec3::splat(0.5 * thickness),
+            Thickness::Number(thickness) if is_closed => DVec3::splat(0.5 * thickness),
             _ => DVec3::ZERO,
         };
-        Bounds::new(surface.bounds.lo() - room, surface.bounds.hi() + room)
+        Bounds::new(bounds.lo() - room, bounds.hi() + room)
     }
 }

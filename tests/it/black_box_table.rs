@@ -123,7 +123,8 @@ pub(crate) fn solids() -> Vec<Solid> {
     ]
 }
 
-/// The smooth minimum of two numbers by a polynomial, rounded where they differ by less than `reach`.
+/// The smooth minimum of two numbers by a polynomial: it is smaller than both where they differ by
+/// less than `reach`.
 pub(crate) fn smooth_min(a: f64, b: f64, reach: f64) -> f64 {
     let near = (reach - (a - b).abs()).max(0.0) / reach;
     a.min(b) - near * near * near * reach / 6.0

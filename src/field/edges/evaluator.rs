@@ -3,7 +3,8 @@
 
 use super::sampled::{STENCIL, Taylor, jet, stencil};
 use super::search::ALIKE;
-use super::table::{EdgeTable, Site};
+use super::site::Site;
+use super::table::EdgeTable;
 use crate::field::{Evaluator, Field, Frame, Jet, Pieces};
 use crate::math::{Bounds, Sym3};
 use glam::{DVec3, Vec3};
@@ -48,7 +49,7 @@ struct Wall {
     other: Taylor,
     /// See [`Site::sign`].
     sign: f64,
-    /// See [`Side::is_flush`](super::table::Side::is_flush), of the piece and of the one beyond.
+    /// See [`Side::is_flush`](super::site::Side::is_flush), of the piece and of the one beyond.
     is_flush: [bool; 2],
     /// The unit vector along the edge, if it fades out somewhere.
     fades_along: Option<DVec3>,
@@ -218,7 +219,7 @@ impl EdgeTable {
     }
 
     /// Whether the sheet of a piece at a place is no surface, since the piece has ended before it
-    /// and f [is zero all the same](super::table::Side::is_flush). The pieces around the place are
+    /// and f [is zero all the same](super::site::Side::is_flush). The pieces around the place are
     /// given with their values there.
     fn is_in_flush(&self, label: u32, p: DVec3, pieces: &[(u32, Jet)]) -> bool {
         let is_flush = |site: &Site| site.sides.iter().any(|side| side.label == label && side.is_flush);

@@ -10,7 +10,7 @@
 use super::cells::Cells;
 use super::labels::Labels;
 use super::search::Search;
-use super::table::Site;
+use super::site::Site;
 use crate::math::{Forest, NONE, key_of, sort_by_key};
 use glam::DVec3;
 use std::cmp::Reverse;

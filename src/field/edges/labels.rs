@@ -113,9 +113,9 @@ impl Sets {
         Self { forest, across, left_out: Vec::new(), sharpness: sharpness.collect() }
     }
 
-    /// Joins pairs of vertices, those beside the sharpest edges first, then the likeliest. Where the
-    /// angle of an edge vanishes, pieces on both sides of it look like one: by then their sets are
-    /// known to be apart.
+    /// Joins pairs of vertices, those beside the sharpest edges first, then the likeliest. Where
+    /// the angle of an edge vanishes, pieces on both sides of it look like one: by then their sets
+    /// are known to be apart.
     fn join_all(&mut self, search: &Search<'_>, mut pairs: Vec<[u32; 2]>) {
         sort_by_key(&mut pairs, |&[a, b]| key_of(search.residual(a, b)));
         sort_by_key(&mut pairs, |pair| {

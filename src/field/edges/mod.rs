@@ -26,6 +26,7 @@ mod joins;
 mod labels;
 mod sampled;
 mod search;
+mod site;
 mod table;
 
 pub(crate) use field::{KnownField, KnownPieces};

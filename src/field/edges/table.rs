@@ -5,6 +5,7 @@ use super::joins::Joins;
 use super::labels::Labels;
 use super::sampled::{Sampled, Taylor};
 use super::search::{RawSite, Search};
+use super::site::{Side, Site};
 use crate::math::newton::step_to_surface;
 use crate::math::{Bounds, NONE};
 use glam::DVec3;
@@ -17,37 +18,6 @@ const NEAR: f64 = 2.0;
 const BESIDE: f64 = 0.1;
 /// Smallest distance from an edge, in steps, at which differences do not reach over it.
 const MARGIN: f64 = 5.0;
-
-/// One of the two pieces that meet at a site.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Side {
-    /// The label of the piece.
-    pub(super) label: u32,
-    /// The vertex of the piece at which the search ended, the nearest to the site.
-    pub(super) end: u32,
-    /// Whether f is zero on the sheet of the piece beyond the site, too, without changing its sign,
-    /// as in the face along which two bodies touch. Its value does not tell there that the piece
-    /// has ended.
-    pub(super) is_flush: bool,
-}
-
-/// A point of an edge.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Site {
-    pub(super) position: DVec3,
-    /// The piece with the smaller label first.
-    pub(super) sides: [Side; 2],
-    /// 1 if f is the larger one of the two pieces here, as in a maximum; −1 if it is the smaller.
-    pub(super) sign: f64,
-    /// Unit vector along the edge.
-    pub(super) along: DVec3,
-    /// Unit vector across the edge, from the second piece to the first.
-    pub(super) across: DVec3,
-    /// Distance between the unit normals on both sides.
-    pub(super) angle: f64,
-    /// Whether the edge of these pieces fades out somewhere.
-    pub(super) fades: bool,
-}
 
 /// The edges of a surface in a box, with the smooth pieces beside them.
 #[derive(Debug)]

@@ -178,6 +178,17 @@ impl Parameter {
     }
 }
 
+/// A surface of the gallery, as its formula knows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GallerySurface {
+    /// Its identifier.
+    pub(crate) id: &'static str,
+    /// The box that is sampled.
+    pub(crate) bounds: Bounds,
+    /// Whether it lies in the box for all values of its parameters.
+    pub(crate) closed: bool,
+}
+
 /// Field f(x, y, z) given by a formula.
 ///
 /// Copies share everything that does not depend on the values of the parameters. [Another
@@ -198,8 +209,8 @@ impl Parameter {
 #[derive(Clone, Debug)]
 pub struct Formula {
     written: Arc<WrittenFormula>,
-    /// Identifier in the gallery.
-    name: Option<&'static str>,
+    /// The surface of the gallery whose formula it is.
+    named: Option<GallerySurface>,
     /// Equation of the same surface that is evaluated instead, if [`Formula::for_sampling`] has
     /// found one.
     simplified: Option<Arc<Equation>>,
@@ -257,14 +268,14 @@ impl Formula {
         Ok(Self::as_written(text, &[])?.for_sampling())
     }
 
-    /// Returns the formula as the one of a surface of the gallery.
-    pub(crate) fn named(self, name: &'static str) -> Self {
-        Self { name: Some(name), ..self }
+    /// Returns the formula as that of a surface of the gallery.
+    pub(crate) fn of_surface(self, surface: GallerySurface) -> Self {
+        Self { named: Some(surface), ..self }
     }
 
-    /// Identifier of the surface of the gallery whose formula it is.
-    pub(crate) fn name(&self) -> Option<&'static str> {
-        self.name
+    /// The surface of the gallery whose formula it is.
+    pub(crate) fn surface(&self) -> Option<GallerySurface> {
+        self.named
     }
 
     /// Returns the formula with another value of a parameter. Parameters that [`Formula::parse`]
@@ -325,7 +336,7 @@ impl Formula {
         let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
         Self {
             written: Arc::new(written),
-            name: None,
+            named: None,
             simplified: None,
             is_regular: false,
             flush: Arc::default(),

@@ -6,7 +6,7 @@ mod open;
 mod periodic;
 mod singular;
 
-use super::formula::{Formula, Parameter};
+use super::formula::{Formula, GallerySurface, Parameter};
 use crate::math::Bounds;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -78,7 +78,7 @@ impl Surface {
         Formula::as_written(self.formula, self.parameters)
             .unwrap_or_else(|error| panic!("gallery surface `{}`: {error}", self.id))
             .for_sampling()
-            .named(self.id)
+            .of_surface(GallerySurface { id: self.id, bounds: self.bounds, closed: self.closed })
     }
 }
 

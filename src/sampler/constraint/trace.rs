@@ -194,9 +194,10 @@ impl Walk<'_, '_> {
         let is_first_left = self.are_left.is_some_and(|are_left| are_left[0]) == is_forward;
         let sides = if is_first_left { [a, b] } else { [b, a] };
         let mut lengths = core::iter::successors(Some(self.step), |length| Some(0.5 * length));
-        let ahead = lengths.by_ref().take(HALVINGS as usize + 1).find_map(|length| {
-            Some((last.along_smooth_join(self.probe, sides, direction, length)?, length))
-        });
+        let ahead = lengths
+            .by_ref()
+            .take(HALVINGS as usize + 1)
+            .find_map(|length| Some((last.along_smooth_join(self.probe, sides, direction, length)?, length)));
         let (mut next, length) = ahead.or_else(|| {
             let length = BESIDE * self.step;
             Some((last.around_kink(self.probe, sides, length)?, length))

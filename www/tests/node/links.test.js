@@ -44,7 +44,7 @@ describe('links', () => {
     expect(count).toBeGreaterThan(200);
     for (const [state, sign] of /** @type {const} */ ([
       [{ ...coarse, formula: 'x^2 +' }, 'fieldError'],
-      [{ settings: { radius_share: 0.0005, max_particles: 200_000 } }, 'notice'],
+      [{ settings: { radius_share: 0.0005 } }, 'notice'],
     ])) {
       void p.engine.openLink(link(state));
       await eventually(() => p.engine[sign].value).toBeTruthy();

@@ -243,7 +243,7 @@ class Run {
       const { radius, predicted_count: predicted, warnings } = start;
       this.predicted = predicted;
       env.post({ type: 'started', id: this.id, radius, predicted, warnings });
-      if (predicted > (KINDS[job.kind].isUnasked ? Infinity : Number(job.settings.max_particles))) {
+      if (predicted > job.asksAbove && !KINDS[job.kind].isUnasked) {
         core.cancel();
         return this.#end('ask');
       }

@@ -28,7 +28,7 @@ import { Drag, Pace, paceKey, samplingSeconds, sizeOfRun } from './pace.js';
 import { Presenter } from './presenter.js';
 
 /**
- * @import { Description, FieldAnswer, FieldOk, SampleKind } from '../types.js'
+ * @import { Description, FieldAnswer, FieldOk, SampleKind, Settings } from '../types.js'
  * @import {
  *   Change, ColumnsMessage, Crash, DoneMessage, FromWorker, Job, LedgerEvent, Run, SampleJob, SamplerOptions,
  * } from './types.js'
@@ -36,6 +36,18 @@ import { Presenter } from './presenter.js';
 
 /** Pause in a drag after which the full run starts, even if the control did not report its release. */
 const REST_MS = 250;
+
+/** Number of particles above which the user is asked first, who may have set a radius that is too small. */
+const MOST_UNASKED = 200_000;
+
+/**
+ * The number of particles above which the user is asked: the limit that was set, if one was.
+ * @param {Description} about @param {Settings} settings  complete
+ */
+function mostUnasked(about, settings) {
+  const limit = Number(settings.max_particles);
+  return limit === about.settings.find(({ name }) => name === 'max_particles')?.default ? MOST_UNASKED : limit;
+}
 
 export class Sampler {
   #columns;
@@ -111,6 +123,7 @@ export class Sampler {
       field: { ...fieldRequest(state, about, this.#models.key()), ...pulled },
       settings,
       following: follows ? [settings] : [],
+      asksAbove: mostUnasked(about, settings),
     };
   }
 
@@ -192,7 +205,7 @@ export class Sampler {
    */
   #askSize(predicted, job) {
     const { store } = this;
-    const limit = Number(job.settings.max_particles);
+    const limit = job.asksAbove;
     const raised = Math.ceil(predicted * description(store).limits.count_room);
     store.notice.value = {
       id: 'size',
@@ -202,7 +215,8 @@ export class Sampler {
         label: 'Sample them anyway',
         run: () => {
           store.notice.value = null;
-          const maxParticles = validSetting(description(store), 'max_particles', raised) ?? limit;
+          const maxParticles =
+            validSetting(description(store), 'max_particles', raised) ?? Number(job.settings.max_particles);
           change(store, { settings: { ...store.state.value.settings, max_particles: maxParticles } });
           this.sample(this.#jobOf({ kind: 'agreed' }));
         },

@@ -40,6 +40,8 @@ export interface SampleJob {
   field: FieldRequest;
   settings: Settings;
   following?: Settings[];
+  /** The number of particles above which the user is asked first. */
+  asksAbove: number;
 }
 /** Relaxes the particles that the worker holds. They must be those of run `of`. */
 export type RelaxJob = { kind: 'relax'; of: number; steps: number };

@@ -12,7 +12,7 @@ import { fakeCore } from './fake-core.js';
  */
 const sampleJob = ({ id = 7, given = null, ...part } = {}) => ({
   id,
-  job: { kind: 'grow', field: { formula: 'x' }, settings: {}, following: [], ...part },
+  job: { kind: 'grow', field: { formula: 'x' }, settings: {}, following: [], asksAbove: Infinity, ...part },
   given,
 });
 /** @param {number} id @param {number} steps @returns {Numbered & {job: RelaxJob}} */
@@ -294,7 +294,7 @@ describe('a job', () => {
 
   test('more particles than agreed are asked about first', async () => {
     const core = fakeCore({ particles: 500_000 });
-    const { posted } = await run(core, sampleJob({ settings: { max_particles: 200_000 } }));
+    const { posted } = await run(core, sampleJob({ asksAbove: 200_000 }));
     expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'ask', predicted: 500_000 });
     expect(core.calls).not.toContain('step');
   });

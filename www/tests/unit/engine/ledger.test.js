@@ -24,6 +24,7 @@ const wish = (formula, more = {}) => ({
   kind: 'new',
   field: { formula },
   settings: { relax_steps: 10 },
+  asksAbove: Infinity,
   ...more,
 });
 /** @param {SampleJob} job @returns {LedgerEvent} */

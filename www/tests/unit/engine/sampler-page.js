@@ -178,6 +178,7 @@ export const request = (formula, more = {}) => ({
   kind: 'grow',
   field: { formula },
   settings: { max_particles: 1000, relax_steps: 10 },
+  asksAbove: 1000,
   ...more,
 });
 
