@@ -9,7 +9,7 @@
 #[path = "../tests/it/black_box_table.rs"]
 mod black_box_table;
 
-use black_box_table::{Function, Solid, more_solids, solids};
+use black_box_table::{Function, Solid, fading_solids, more_solids, solids};
 use glam::{DMat3, DVec3, dvec3};
 use marching_particles::{Bounds, MeshFormat, Settings, sample};
 use std::fs::{self, File};
@@ -47,7 +47,7 @@ fn main() -> io::Result<()> {
     let folder = PathBuf::from(arguments.next().expect("the folder for the meshes"));
     let part = arguments.next().unwrap_or_default();
     fs::create_dir_all(&folder)?;
-    let known = solids().into_iter().map(|solid| {
+    let known = solids().into_iter().chain(fading_solids()).map(|solid| {
         let Solid { name, euler, creases, corners, volume, f } = solid;
         (name, f, Some((euler, creases, corners)), volume)
     });

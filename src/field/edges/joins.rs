@@ -95,8 +95,10 @@ impl Joins {
         }
         let mut centres = Vec::new();
         let mut open = BinaryHeap::new();
+        // The squared distance, the centre and the vertex in one number.
         let entry = |centre: u32, place: DVec3, k: u32| {
-            Reverse((key_of(place.distance_squared(vertices[k as usize].p)), centre, k))
+            let distance_sq = key_of(place.distance_squared(vertices[k as usize].p));
+            Reverse(u128::from(distance_sq) << 64 | u128::from(centre) << 32 | u128::from(k))
         };
         for site in sites {
             for (side, way) in site.sides.into_iter().zip([site.across, -site.across]) {
@@ -108,7 +110,8 @@ impl Joins {
             }
         }
         let mut nearest = vec![NONE; vertices.len()];
-        while let Some(Reverse((_, centre, k))) = open.pop() {
+        while let Some(Reverse(entered)) = open.pop() {
+            let [centre, k] = [(entered >> 32) as u32, entered as u32];
             if nearest[k as usize] == NONE {
                 nearest[k as usize] = centre;
                 let place = centres[centre as usize].place;

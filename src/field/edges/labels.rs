@@ -2,8 +2,8 @@
 
 use super::cells::Cells;
 use super::search::{ALIKE_NEAR, Search};
-use crate::math::{Forest, NONE, key_of, sort_by_key};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::math::{Forest, NONE, key_of, sort_by_key, sort_pairs};
+use std::collections::BTreeMap;
 
 /// Smallest number of vertices of a piece. Fewer have no label.
 const FEWEST: usize = 8;
@@ -44,13 +44,13 @@ impl Labels {
         sets.join_all(search, near);
         let Sets { mut forest, left_out, .. } = sets;
         let sites = Cells::new(search.cell, search.sites.iter().map(|site| site.position));
-        let (beside, fading): (Vec<_>, Vec<_>) = left_out.into_iter().partition(|&[a, b]| {
+        let (mut beside, fading): (Vec<_>, Vec<_>) = left_out.into_iter().partition(|&[a, b]| {
             let place = vertices[a as usize].p.midpoint(vertices[b as usize].p);
             let mut near = sites.around(place).map(|k| search.sites[k as usize].position);
             near.any(|site| site.distance(place) <= search.cell)
         });
-        let beside: BTreeSet<[u32; 2]> = beside.into_iter().collect();
-        links.retain(|link| !beside.contains(link));
+        sort_pairs(&mut beside);
+        links.retain(|link| beside.binary_search(link).is_err());
         Self { label: numbered(&mut forest, vertices.len()), links, fading }
     }
 

@@ -7,7 +7,7 @@ use super::sampled::{Sampled, Taylor};
 use super::search::{RawSite, Search};
 use super::site::{Side, Site};
 use crate::math::newton::step_to_surface;
-use crate::math::{Bounds, NONE};
+use crate::math::{Bounds, NONE, sort_pairs};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -199,7 +199,7 @@ impl EdgeTable {
     pub(super) fn tangent_pairs(&self) -> Vec<[u32; 2]> {
         let mut pairs: Vec<_> =
             self.joins.iter().flat_map(|joins| joins.places.iter().map(|place| place.0)).collect();
-        pairs.sort_unstable();
+        sort_pairs(&mut pairs);
         pairs.dedup();
         pairs
     }
