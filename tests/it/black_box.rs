@@ -88,6 +88,19 @@ fn functions_whose_edges_fade_out_are_closed() {
 }
 
 #[test]
+fn edges_that_are_nowhere_sharp_are_left_out_where_they_fade_out() {
+    for height in [0.01, 0.02, 0.05, 0.1] {
+        let f = move |p: DVec3| {
+            let up = p.z.max(0.0);
+            p.length() - 1.0 + height * p.x.abs() * up * up
+        };
+        let settings = Settings::with_count(3_000).in_box(Bounds::cube(1.9));
+        let sample = sample(f, &settings).unwrap_or_else(|error| panic!("{height}: {error}"));
+        assert!(sample.mesh().topology.is_closed(), "{height}: {:?}", sample.report().warnings);
+    }
+}
+
+#[test]
 #[ignore = "slow: for cargo xtask test --all"]
 fn most_blocks_that_are_smoothly_joined_to_a_ball_are_closed() {
     /// A share that was usual when the test was written.

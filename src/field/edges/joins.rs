@@ -58,6 +58,7 @@ impl Joins {
         }
         continue_edges(sites, search.cell);
         sites.retain(|site| !site.fades || site.angle >= LEAST);
+        joins.join_undivided(labels, sites);
         joins.find_nearest(search, labels, sites);
         for (label, &nearest) in labels.label.iter_mut().zip(&joins.nearest) {
             if nearest != NONE {
@@ -80,6 +81,26 @@ impl Joins {
         let own = around.filter(|&k| self.group(self.centres[k as usize].label) == Some(group));
         let nearest = own.min_by_key(|&k| (key_of(self.centres[k as usize].place.distance_squared(p)), k));
         nearest.map(|k| self.centres[k as usize].label)
+    }
+
+    /// Makes each group one piece that has no point of an edge any more.
+    fn join_undivided(&mut self, labels: &mut Labels, sites: &[Site]) {
+        let mut is_divided = vec![false; self.group.len()];
+        for side in sites.iter().flat_map(|site| site.sides) {
+            if let Some(group) = self.group(side.label) {
+                is_divided[group as usize] = true;
+            }
+        }
+        for label in &mut labels.label {
+            if let Some(group) = self.group(*label).filter(|&group| !is_divided[group as usize]) {
+                *label = group;
+            }
+        }
+        for group in &mut self.group {
+            if *group != NONE && !is_divided[*group as usize] {
+                *group = NONE;
+            }
+        }
     }
 
     /// Sets the centres, and finds for each vertex the nearest one within its group.

@@ -89,10 +89,10 @@ impl EdgeTable {
                 fades: false,
             });
         }
+        let joins = Joins::new(&search, &mut labels, &mut sites);
         if sites.is_empty() {
             return None;
         }
-        let joins = Joins::new(&search, &mut labels, &mut sites);
         let label = labels.label;
         let count = label.iter().filter(|&&label| label != NONE).max().map_or(0, |last| last + 1);
         let by_cell = Cells::new(cell, vertices.iter().map(|vertex| vertex.p));
