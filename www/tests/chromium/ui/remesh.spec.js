@@ -124,6 +124,9 @@ test('edges are marked in the picture, by mouse and keys, undone, kept by other 
   const lines = async () => (await state(page)).lines.length;
   await choose(page, 'block.off', chamfered());
   await settled(page);
+  // The faces of a coarse model would all stay sharp.
+  await panel.getByRole('radio', { name: 'By angle' }).check();
+  await settled(page);
   await lookFromAbove(page);
   await panel.getByRole('button', { name: 'Mark edges' }).click();
   await expect(card.getByRole('status')).toHaveText('Press an edge to keep it sharp');
