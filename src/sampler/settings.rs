@@ -347,7 +347,7 @@ impl Settings {
     /// The values that `Default` gives. The radius is the smaller one of the paper (§6). With the
     /// chord error most surfaces take about as many particles as the default count, with the
     /// largest curvature more. On a sphere the limits of the radii give 300,000 particles and 340.
-    /// Every size that is asked for has room.
+    /// The limit on particles is the largest one, so that it stops no run of an accepted count.
     pub const DEFAULT: Self = Self {
         bounds: None,
         radius: None,

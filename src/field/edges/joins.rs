@@ -1,11 +1,11 @@
 //! Smooth joins of pieces between which an edge fades out, as the edges of a cube do in the fillet
 //! that joins it to a ball.
 //!
-//! Such pieces are one around the end of the edge, so that nothing in the values of f tells where
-//! each of them ends. They are divided by distance instead: on either side of each point of an edge
-//! there is a *centre*, and a vertex belongs to the piece of the nearest centre that is reached
-//! within the pieces. Beyond the end of an edge its last centres divide the surface along the plane
-//! between them.
+//! Around the end of such an edge the surface is smooth, and the values of f do not tell where one
+//! piece ends and the other begins. The search divides them by distance: it puts a *centre* on
+//! either side of each known point of an edge, and gives each vertex to the piece of the nearest
+//! centre from which the pieces lead to it. Beyond the end of an edge its last two centres divide
+//! the surface along the plane halfway between them.
 
 use super::cells::Cells;
 use super::labels::Labels;
@@ -18,8 +18,8 @@ use std::collections::BinaryHeap;
 
 /// Distance of a centre from its edge, in cells of the grid.
 const ASIDE: f64 = 0.25;
-/// Least distance between the unit normals on both sides of an edge that fades out, an angle of six
-/// degrees. Farther on the edge is left out: what its pieces are there is hardly known.
+/// Least distance between the unit normals on both sides of an edge that fades out: an angle of six
+/// degrees. Where the angle is smaller the edge is left out, since its pieces are hardly known.
 const LEAST: f64 = 0.1;
 /// Number of times that the way between two vertices is halved.
 const HALVINGS: u32 = 20;
@@ -47,8 +47,14 @@ pub(super) struct Joins {
 
 impl Joins {
     /// Divides pieces between which edges fade out, and labels their vertices anew; none if there
-    /// are no such pieces. Removes the sites at which an edge has nearly faded out.
-    pub(super) fn new(search: &Search<'_>, labels: &mut Labels, sites: &mut Vec<Site>) -> Option<Self> {
+    /// are no such pieces. Removes the sites at which an edge has nearly faded out. `vertices` are
+    /// those of the search by their cells.
+    pub(super) fn new(
+        search: &Search<'_>,
+        labels: &mut Labels,
+        sites: &mut Vec<Site>,
+        vertices: &Cells,
+    ) -> Option<Self> {
         let by_cell = Cells::new(search.cell, core::iter::empty());
         let (centres, nearest, places) = Default::default();
         let mut joins = Self { group: groups(labels)?, centres, nearest, places, by_cell };
@@ -65,7 +71,7 @@ impl Joins {
                 *label = joins.centres[nearest as usize].label;
             }
         }
-        joins.find_places(search, labels);
+        joins.find_places(search, labels, vertices);
         Some(joins)
     }
 
@@ -143,8 +149,7 @@ impl Joins {
     }
 
     /// Finds points at which the label changes between two neighbouring vertices of a group.
-    fn find_places(&mut self, search: &Search<'_>, labels: &Labels) {
-        let by_cell = Cells::new(search.cell, search.vertices.iter().map(|vertex| vertex.p));
+    fn find_places(&mut self, search: &Search<'_>, labels: &Labels, vertices: &Cells) {
         let mut places = Vec::new();
         for link in &labels.links {
             let [first, second] = link.map(|k| labels.label[k as usize]);
@@ -153,7 +158,7 @@ impl Joins {
                 continue;
             }
             let [mut from, mut to] = link.map(|k| search.vertices[k as usize].p);
-            let label_at = |p: DVec3| self.label(p, group, &by_cell);
+            let label_at = |p: DVec3| self.label(p, group, vertices);
             let [Some(before), Some(after)] = [from, to].map(label_at) else { continue };
             if before == after {
                 continue;

@@ -84,8 +84,8 @@ struct Sets {
     across: BTreeMap<u32, Vec<u32>>,
     /// Pairs that were not joined, since there is an edge between their sets.
     left_out: Vec<[u32; 2]>,
-    /// For each vertex the distance between the unit normals on both sides of the sharpest edge
-    /// beside it, 0 if there is none.
+    /// The sharpness of the edges beside each vertex: the largest distance between the unit normals
+    /// on both sides of one, or 0 without an edge.
     sharpness: Vec<f64>,
 }
 

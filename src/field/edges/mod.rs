@@ -12,7 +12,7 @@
 //! 3. *Closer looks*. Around corners, and where the search was inconclusive, it is repeated on a
 //!    grid three times as fine.
 //! 4. *Labels* ([`labels`]). All vertices that are joined, directly or by others, have one label.
-//!    Where an edge fades out, nothing but distance divides what it divides elsewhere ([`joins`]).
+//!    Where an edge fades out, the pieces on both sides of it are divided by distance ([`joins`]).
 //! 5. *Pieces* ([`evaluator`]). Within its region a piece is f. Beyond an edge it is the Taylor
 //!    polynomial around a place a little within.
 //!

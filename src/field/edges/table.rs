@@ -89,13 +89,13 @@ impl EdgeTable {
                 fades: false,
             });
         }
-        let joins = Joins::new(&search, &mut labels, &mut sites);
+        let by_cell = Cells::new(cell, vertices.iter().map(|vertex| vertex.p));
+        let joins = Joins::new(&search, &mut labels, &mut sites, &by_cell);
         if sites.is_empty() {
             return None;
         }
+        let count = labels.count();
         let label = labels.label;
-        let count = label.iter().filter(|&&label| label != NONE).max().map_or(0, |last| last + 1);
-        let by_cell = Cells::new(cell, vertices.iter().map(|vertex| vertex.p));
         let sites_by_cell = Cells::new(NEAR * cell, sites.iter().map(|site| site.position));
         Some(Self {
             vertices: search.vertices,
@@ -276,7 +276,7 @@ impl EdgeTable {
 
 /// Smallest distance between cells of one pair, in widths.
 pub(super) const APART: f64 = 6.0;
-/// The same on smooth joins, which may be short.
+/// Smallest distance between cells of one pair on smooth joins, in widths: a join may be short.
 const JOINS_APART: f64 = 1.5;
 
 /// Small cells around points of edges, from which these can be traced. Each pair of labels has one
