@@ -9,8 +9,8 @@
 //! `docs/results.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
-use marching_particles::math::Bounds;
 use marching_particles::quality::Figures;
 use marching_particles::{Method, Run, Sampling, Settings, SizeMode};
 use rand_core::Rng;

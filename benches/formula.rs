@@ -4,10 +4,10 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
+use marching_particles::field::Sym3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::field::{Field, Frame};
-use marching_particles::math::Sym3;
 use rand_core::Rng;
 use std::hint::black_box;
 

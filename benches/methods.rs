@@ -12,10 +12,10 @@
 #[macro_use]
 mod settings;
 
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::rbf::RbfField;
 use marching_particles::field::{Field, gallery, model};
-use marching_particles::math::Bounds;
 use marching_particles::pointcloud::fit_model;
 use marching_particles::quality::Figures;
 use marching_particles::{Method, Run, Sampling, Settings, SizeMode, Warning};

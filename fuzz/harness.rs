@@ -5,15 +5,16 @@
 //! in `seeds/`.
 
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::{Enclosure, Field, Frame, Jet};
+use marching_particles::field::{Interval, Sym3};
 use marching_particles::image::{ImageChoice, RawVoxels, VoxelType};
-use marching_particles::math::{Bounds, Interval, Sym3};
+use marching_particles::internal::session::{FieldRequest, Session};
+use marching_particles::internal::slices::complete;
 use marching_particles::pointcloud::job::Job;
 use marching_particles::pointcloud::read::Reader;
 use marching_particles::sampler::{Search, Settings};
-use marching_particles::session::{FieldRequest, Session};
-use marching_particles::slices::complete;
 use marching_particles::{Image, TriangleMesh};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;

@@ -56,7 +56,7 @@
 //!   precision.
 //! * The same field, settings and seed give the same particles to the last bit, natively and in
 //!   WebAssembly: every sum has a fixed order, no clock or platform function is used, and
-//!   transcendental functions are [our own](math::functions).
+//!   transcendental functions are our own.
 //! * A `Result` is for the user's data, a [`StopReason`] for what a run met, a [`Warning`] for what
 //!   its user should know, and a panic for a mistake in the calling code; routines that can panic
 //!   say when.
@@ -134,30 +134,49 @@ pub mod remesh;
 pub mod run;
 pub mod sampler;
 
-// For the project's own page, command line, tests and benches. These, and whatever else is hidden
-// in the modules above, may change at any time.
-#[doc(hidden)]
-pub mod differential;
-#[doc(hidden)]
-pub mod extent;
-#[doc(hidden)]
-pub mod lesson;
-#[doc(hidden)]
-pub mod math;
-#[doc(hidden)]
-pub mod paper;
-#[doc(hidden)]
-pub mod session;
-#[doc(hidden)]
-pub mod slices;
-#[doc(hidden)]
-pub mod spatial;
-
+mod differential;
+mod extent;
+mod lesson;
+mod math;
+mod paper;
+mod session;
+mod slices;
+mod spatial;
 mod topology;
 
 #[cfg(all(test, feature = "points"))]
 mod page_types {
     mod tests;
+}
+
+/// The parts that the project's page, command line, Python package and tests use beyond the
+/// interface. They may change at any time, as may what is hidden in the modules above.
+#[doc(hidden)]
+pub mod internal {
+    pub mod differential {
+        pub use crate::differential::*;
+    }
+    pub mod extent {
+        pub use crate::extent::*;
+    }
+    pub mod lesson {
+        pub use crate::lesson::*;
+    }
+    pub mod math {
+        pub use crate::math::*;
+    }
+    pub mod paper {
+        pub use crate::paper::*;
+    }
+    pub mod session {
+        pub use crate::session::*;
+    }
+    pub mod slices {
+        pub use crate::slices::*;
+    }
+    pub mod spatial {
+        pub use crate::spatial::*;
+    }
 }
 
 #[doc(inline)]

@@ -190,6 +190,7 @@ pub struct Estimated<'a, T> {
 }
 
 impl<'a, T> Estimated<'a, T> {
+    /// Work whose length is `expected` to be so many steps.
     pub fn new(work: Work<'a, T>, expected: u64) -> Self {
         Self { work, done: 0, expected }
     }

@@ -2,9 +2,10 @@
 #![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
 
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
+use marching_particles::field::Sym3;
 use marching_particles::field::gallery::SURFACES;
 use marching_particles::field::{Enclosure, Field, Frame};
-use marching_particles::math::{Bounds, Sym3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 

@@ -18,8 +18,8 @@ mod steps;
 
 use draw::{Colour, View, draw, write_row};
 use glam::Vec3;
-use marching_particles::lesson::{self, Lesson, LessonMethod, QueueOrder};
-use marching_particles::math::grouped;
+use marching_particles::internal::lesson::{self, Lesson, LessonMethod, QueueOrder};
+use marching_particles::internal::math::grouped;
 use marching_particles::quality;
 use marching_particles::sampler::{LawKind, Sampling};
 use printed::{Line, Printed, TABLE_1, TABLE_2};

@@ -1,11 +1,11 @@
 //! One run of a method on a job: particles, steps, times and figures.
 
 use glam::Vec3;
+use marching_particles::Bounds;
 use marching_particles::field::rbf::RbfField;
 use marching_particles::field::{Field, gallery, model};
-use marching_particles::lesson::{self, ChapterKind, Lesson};
-use marching_particles::math::Bounds;
-use marching_particles::paper::Particle;
+use marching_particles::internal::lesson::{self, ChapterKind, Lesson};
+use marching_particles::internal::paper::Particle;
 use marching_particles::pointcloud::fit_model;
 use marching_particles::quality::{self, Figures};
 use marching_particles::sampler::Phase;

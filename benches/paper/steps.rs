@@ -2,8 +2,8 @@
 //! plane.
 
 use glam::{DVec2, DVec3};
-use marching_particles::lesson::{Event, Vector};
-use marching_particles::paper::Particle;
+use marching_particles::internal::lesson::{Event, Vector};
+use marching_particles::internal::paper::Particle;
 use std::fmt::Write as _;
 
 /// Side of a panel, and of its caption.

@@ -3,10 +3,10 @@
 use marching_particles::Error;
 use marching_particles::field::FieldError;
 use marching_particles::field::formula::{FormulaError, FormulaErrorKind, Thickness};
+use marching_particles::internal::session::{Condition, Fault, FaultKind, SolidSettings};
 use marching_particles::pointcloud::JobError;
 use marching_particles::run::ValueError;
 use marching_particles::sampler::{FollowError, SettingsError};
-use marching_particles::session::{Condition, Fault, FaultKind, SolidSettings};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;

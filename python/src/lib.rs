@@ -6,8 +6,8 @@ mod field;
 mod run;
 
 use field::{Field, Mesh};
+use marching_particles::internal::session::settings;
 use marching_particles::pointcloud::CENTRES;
-use marching_particles::session::settings;
 use pyo3::prelude::*;
 use run::{Sample, sample};
 

@@ -3,11 +3,11 @@
 use crate::errors;
 use crate::field::Field;
 use marching_particles::export::Vertices;
-use marching_particles::quality::NamedValues;
-use marching_particles::run::{Measured, Value};
-use marching_particles::session::{
+use marching_particles::internal::session::{
     Asked, FieldRequest, Lengths, Session, SolidSettings, SpacingText, without_effect,
 };
+use marching_particles::quality::NamedValues;
+use marching_particles::run::{Measured, Value};
 use marching_particles::{Bounds, Settings, Spacing, Warning};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;

@@ -10,16 +10,16 @@ use crate::remesh::MeshArguments;
 use crate::spacing::{SpacingOption, spacing, units};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use marching_particles::Bounds;
 use marching_particles::export::{Bodies, Placement, Unit, UpAxis, Vertices};
 use marching_particles::field::formula::Thickness;
 use marching_particles::field::model;
 use marching_particles::field::rbf::Pull;
 use marching_particles::image::RawVoxels;
-use marching_particles::math::Bounds;
-use marching_particles::run::Measured;
-use marching_particles::session::{
+use marching_particles::internal::session::{
     BeyondPoints, BoxCell, BoxFaces, BoxMode, FileRecord, Language, SolidSettings, ValueText,
 };
+use marching_particles::run::Measured;
 use marching_particles::{Format, gallery};
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;

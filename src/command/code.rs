@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::spacing::space;
 use crate::surface::{choose, fit};
 use marching_particles::field::model;
-use marching_particles::session::{Language, Session, SpacingText};
+use marching_particles::internal::session::{Language, Session, SpacingText};
 use std::io::Write;
 use std::process::ExitCode;
 

@@ -2,9 +2,9 @@
 
 use marching_particles::Settings;
 use marching_particles::field::formula::{FormulaErrorKind, Mended};
-use marching_particles::math::{shortest_text, significant};
+use marching_particles::internal::math::{shortest_text, significant};
+use marching_particles::internal::session::{Fault, FaultKind, settings};
 use marching_particles::sampler::SettingsError;
-use marching_particles::session::{Fault, FaultKind, settings};
 use std::fmt;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::options::number;
 use marching_particles::Image;
 use marching_particles::image::{ImageChoice, ImageField, ImageSurface, RawVoxels, VoxelType};
-use marching_particles::math::{grouped, significant};
+use marching_particles::internal::math::{grouped, significant};
 use serde::Serialize;
 
 /// The image and its surface, for the report.

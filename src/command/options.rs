@@ -5,11 +5,12 @@ use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
+use marching_particles::Bounds;
 use marching_particles::Settings;
 use marching_particles::field::formula;
 use marching_particles::field::formula::FormulaErrorKind;
-use marching_particles::math::{Bounds, grouped, shortest_text};
-use marching_particles::session::{
+use marching_particles::internal::math::{grouped, shortest_text};
+use marching_particles::internal::session::{
     Setting, SettingGroup, SettingKind, SettingValue, SolidSettings, settings, without_effect,
 };
 use serde_json::{Map, Value as Json};

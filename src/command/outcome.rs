@@ -2,13 +2,13 @@
 
 use crate::image::ImageInfo;
 use crate::remesh::RemeshInfo;
+use marching_particles::Bounds;
 use marching_particles::export::{Bodies, Placement, Unit};
 use marching_particles::field::formula::Thickness;
 use marching_particles::field::model::ModelInfo;
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::SpacingText;
 use marching_particles::mesh::{Body, Inside, Triangulation};
 use marching_particles::sampler::Settings;
-use marching_particles::session::SpacingText;
 use marching_particles::{Report, Sample};
 use serde::Serialize;
 use std::collections::BTreeMap;

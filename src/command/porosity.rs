@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::outcome::Porosity;
 use crate::surface::{fit, refused_solid};
 use marching_particles::field::formula::Thickness;
-use marching_particles::session::{FieldRequest, Session, SolidSettings, Source};
+use marching_particles::internal::session::{FieldRequest, Session, SolidSettings, Source};
 use marching_particles::{Bounds, Settings};
 
 /// Largest difference from the wanted share that needs no correction.

@@ -3,11 +3,12 @@
 use crate::arguments::{BoxChoice, Length, Sweep};
 use crate::options::{list, number, whole};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use marching_particles::Bounds;
 use marching_particles::export::{Unit, VERTICES, Vertices};
 use marching_particles::field::formula::Thickness;
-use marching_particles::math::{Bounds, BoxError, shortest_text};
+use marching_particles::internal::math::{BoxError, shortest_text};
+use marching_particles::internal::session::{BeyondPoints, SolidSettings, ValueText};
 use marching_particles::pointcloud::CENTRES;
-use marching_particles::session::{BeyondPoints, SolidSettings, ValueText};
 use marching_particles::{Format, MeshFormat};
 
 /// Parses a name of a table to its value.

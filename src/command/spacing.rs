@@ -3,8 +3,8 @@
 use crate::arguments::SampleArguments;
 use crate::failure::Failure;
 use crate::options::{Length, length, number};
-use marching_particles::math::shortest_text;
-use marching_particles::session::{FaultKind, Session, SpacingText};
+use marching_particles::internal::math::shortest_text;
+use marching_particles::internal::session::{FaultKind, Session, SpacingText};
 
 /// A spacing from the command line.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,10 +4,10 @@ use crate::outcome::{MeshCounts, Outcome, Porosity};
 use marching_particles::export::Unit;
 use marching_particles::field::formula::Thickness;
 use marching_particles::field::model::{ModelInfo, NormalSource};
-use marching_particles::math::{counted, grouped, significant};
+use marching_particles::internal::math::{counted, grouped, significant};
+use marching_particles::internal::session::{ReportRow, SpacingText, describe};
 use marching_particles::mesh::Inside;
 use marching_particles::run::{Cut, Severity};
-use marching_particles::session::{ReportRow, SpacingText, describe};
 use serde_json::Value;
 use std::io::{self, Write};
 

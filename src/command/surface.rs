@@ -8,13 +8,13 @@ use crate::points;
 use crate::remesh::{self, RemeshInfo};
 use marching_particles::field::formula::{self, MODEL, Parameter, Thickness};
 use marching_particles::field::model::{self, ModelInfo};
-use marching_particles::math::shortest_text;
+use marching_particles::internal::math::shortest_text;
+use marching_particles::internal::session::{
+    BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, Session, SolidSettings, Source,
+};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::remesh::MeshField;
-use marching_particles::session::{
-    BoxFaces, Fault, FaultKind, FieldAnswer, FieldRequest, Session, SolidSettings, Source,
-};
 use marching_particles::{Bounds, Field, Settings, gallery};
 use std::path::Path;
 use std::sync::Arc;

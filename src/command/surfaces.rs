@@ -2,7 +2,7 @@
 
 use crate::arguments::Surfaces;
 use crate::failure::Failure;
-use marching_particles::session::{SurfaceEntry, describe};
+use marching_particles::internal::session::{SurfaceEntry, describe};
 use std::io::Write;
 use std::process::ExitCode;
 

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::surface::{fit, refused_solid};
 use marching_particles::export::{Bodies, Unit};
 use marching_particles::field::formula::Thickness;
-use marching_particles::session::{Session, SolidSettings, Source};
+use marching_particles::internal::session::{Session, SolidSettings, Source};
 use marching_particles::{Bounds, Run, Settings};
 
 /// Largest relative difference from the wanted wall that needs no correction: printers do not

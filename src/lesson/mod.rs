@@ -15,7 +15,7 @@
 //!
 //! ```
 //! use marching_particles::field::gallery;
-//! use marching_particles::lesson::{Event, Lesson, LessonSettings};
+//! use marching_particles::internal::lesson::{Event, Lesson, LessonSettings};
 //!
 //! let sphere = gallery::find("sphere").expect("a surface of the gallery");
 //! let settings = LessonSettings { radius: 0.1, relax_steps: 2, ..LessonSettings::default() };
@@ -30,7 +30,7 @@
 //! // Back to the moment before the first event.
 //! lesson.seek(first.first_event);
 //! assert!(lesson.particles().is_empty());
-//! # Ok::<(), marching_particles::lesson::LessonError>(())
+//! # Ok::<(), marching_particles::internal::lesson::LessonError>(())
 //! ```
 //!
 //! Fronts begin at the given seeds, or at points that a grid in the box finds on the surface, if no

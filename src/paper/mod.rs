@@ -17,7 +17,7 @@
 //!
 //! ```
 //! use marching_particles::field::gallery;
-//! use marching_particles::paper::{ImplicitSurface, PaperRun, RadiusRule, Rules};
+//! use marching_particles::internal::paper::{ImplicitSurface, PaperRun, RadiusRule, Rules};
 //!
 //! let sphere = gallery::find("sphere").expect("a surface of the gallery");
 //! let surface = ImplicitSurface::new(Box::new(sphere.field()), &sphere.bounds);
@@ -166,6 +166,7 @@ pub struct ChildSlot {
 
 /// A moment in the treatment of a particle, or of one of its children. Lengths are in the field's
 /// coordinates, angles in radians.
+#[expect(missing_docs, reason = "each variant describes its fields")]
 pub enum Moment<'a> {
     /// The tangent frame is laid (§4.2, Fig. 3).
     Frame(&'a TangentFrame),

@@ -64,6 +64,7 @@ impl Session {
     /// The particles and their figures as a file of the format with this extension, or the record
     /// alone for `json`. `json` gives the text of the record. None if the extension is unknown or
     /// there is no record.
+    #[expect(clippy::missing_panics_doc, reason = "memory takes all that is written")]
     pub fn particle_file(
         &self,
         extension: &str,

@@ -3,13 +3,13 @@
 
 use crate::runs::{assert_fates, begun, figures, gallery_figures, of_gallery, sampled, sampled_in_any_steps};
 use crate::smooth::smooth;
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
-use marching_particles::math::Bounds;
+use marching_particles::internal::spatial::CellGrid;
 use marching_particles::mesh::triangulation::triangulate;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{GapPolicy, LawKind, Phase, Sampling, Settings, SizeMode, StopReason};
-use marching_particles::spatial::CellGrid;
 
 /// Settings for about 4,000 particles without relaxation.
 fn settings() -> Settings {
@@ -287,7 +287,7 @@ fn levels_increase_along_the_columns() {
 /// particles are others, but there are as many, and they are as large.
 #[test]
 fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
-    use marching_particles::lesson::{self, Lesson, Matched};
+    use marching_particles::internal::lesson::{self, Lesson, Matched};
     for id in ["sphere", "ellipsoid", "torus"] {
         let surface = gallery::find(id).expect("a gallery surface");
         let diagonal = surface.bounds.diagonal();

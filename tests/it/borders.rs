@@ -3,9 +3,9 @@
 
 use crate::runs::{begun, figures, sampled, sampled_in_any_steps};
 use glam::Vec3;
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
-use marching_particles::math::Bounds;
 use marching_particles::mesh::Topology;
 use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};

@@ -1,14 +1,14 @@
 //! Tests of the box that a session fits around the surface of a formula.
 
 use crate::runs::run;
+use marching_particles::Bounds;
 use marching_particles::Report;
-use marching_particles::extent::Reach;
 use marching_particles::field::gallery;
-use marching_particles::math::Bounds;
+use marching_particles::internal::extent::Reach;
+use marching_particles::internal::session::{BoxMode, FieldAnswer, FieldRequest, Session, SolidSettings};
 use marching_particles::quality::Figures;
 use marching_particles::run::Cut;
 use marching_particles::sampler::Settings;
-use marching_particles::session::{BoxMode, FieldAnswer, FieldRequest, Session, SolidSettings};
 
 fn set(session: &mut Session, formula: &str) -> FieldAnswer {
     // As the page does: a formula is typed over that of a gallery surface.

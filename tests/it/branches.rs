@@ -1,11 +1,12 @@
 //! The smooth branches of formulas: which one gives f where, which may in a box, and their values.
 
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
+use marching_particles::field::Sym3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::SURFACES;
 use marching_particles::field::{Evaluator, Field, Frame, Piecewise};
-use marching_particles::math::{Bounds, Sym3};
-use marching_particles::slices::complete;
+use marching_particles::internal::slices::complete;
 use proptest::prelude::*;
 use std::sync::Arc;
 

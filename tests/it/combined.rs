@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3, dvec2, dvec3};
 use marching_particles::field::model::ModelInfo;
 use marching_particles::field::rbf::RbfData;
 use marching_particles::field::{Combined, Field, FnField, Frame};
-use marching_particles::session::{FieldRequest, Session};
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::{
     Bounds, Formula, Sample, Settings, difference, intersection, offset, sample, smooth_union, union,
 };

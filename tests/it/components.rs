@@ -3,15 +3,15 @@
 
 use crate::runs::{finished, run, session};
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::Report;
 use marching_particles::field::Enclosure;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::field::{Field, Frame};
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Method, Sampling, Search, Settings, StopReason};
-use marching_particles::session::{FieldRequest, Session};
 
 /// Samples in the cube of half-width `half`, with `share` of its diagonal as radius.
 fn sampled(formula: &str, half: f64, share: f64) -> (Session, Report) {

@@ -2,8 +2,9 @@
 //! every patch.
 
 use glam::{DVec2, DVec3, Vec3};
+use marching_particles::Bounds;
+use marching_particles::field::Sym3;
 use marching_particles::field::{Evaluator, Field, Frame, Jet, Pieces};
-use marching_particles::math::{Bounds, Sym3};
 use marching_particles::particles::{Particles, Slots};
 
 /// A crease: points in order along it, and the patches on its left and on its right.

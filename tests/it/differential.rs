@@ -1,11 +1,12 @@
 //! Tests of curvatures against closed forms and finite differences.
 
 use glam::{DVec3, Vec3};
-use marching_particles::differential::{Curvature, curvatures, curvatures_of, exact_curvature};
+use marching_particles::Bounds;
 use marching_particles::field::Frame;
+use marching_particles::field::Sym3;
 use marching_particles::field::gallery::{self, SURFACES};
 use marching_particles::field::{Field, Jet};
-use marching_particles::math::{Bounds, Sym3};
+use marching_particles::internal::differential::{Curvature, curvatures, curvatures_of, exact_curvature};
 use rand_core::Rng;
 
 /// Tolerance for double precision.

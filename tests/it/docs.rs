@@ -5,9 +5,9 @@
 //! `UPDATE_GOLDEN=1 cargo test --test it docs::` writes what differs.
 
 use crate::golden::checkout;
-use marching_particles::math::shortest_text;
+use marching_particles::internal::math::shortest_text;
+use marching_particles::internal::session::{Condition, Setting, SettingKind, SettingValue, settings};
 use marching_particles::pointcloud::InputFormat;
-use marching_particles::session::{Condition, Setting, SettingKind, SettingValue, settings};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 

@@ -2,15 +2,16 @@
 
 use crate::runs::{finished, run};
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::Report;
 use marching_particles::export::{self, Format, MeshFormat};
 use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::{Enclosure, Field};
-use marching_particles::math::{Bounds, Interval, Sym3};
+use marching_particles::field::{Interval, Sym3};
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::quality;
 use marching_particles::sampler::{Method, Sampling, Search, Settings};
-use marching_particles::session::{FieldRequest, Session};
 
 const FAR: DVec3 = DVec3::new(100.0, -200.0, 300.0);
 

@@ -4,12 +4,12 @@
 
 use crate::runs::session;
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::Field;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::sampler::{Phase, Progress, Sampling, Settings, SizeMode, StopReason};
-use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Report, Warning};
 
 /// Samples `formula` in the cube of half-width `half`.

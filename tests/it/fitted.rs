@@ -3,9 +3,9 @@
 
 use crate::cases;
 use glam::DVec3;
-use marching_particles::extent::{self, Extent, Reach};
+use marching_particles::Bounds;
 use marching_particles::field::FnField;
-use marching_particles::math::Bounds;
+use marching_particles::internal::extent::{self, Extent, Reach};
 use marching_particles::{Formula, Settings, Warning, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;

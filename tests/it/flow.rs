@@ -1,14 +1,15 @@
 //! Tests of particles that follow a moving surface.
 
 use glam::DVec3;
+use marching_particles::Bounds;
 use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
-use marching_particles::math::{Bounds, NONE};
+use marching_particles::internal::math::NONE;
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::mesh::half_edge::HalfEdges;
 use marching_particles::quality::figures::Coverage;
 use marching_particles::run::{Cut, Measured};
 use marching_particles::sampler::{FollowError, Phase, SizeMode};
-use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Method, Run, Sampling, Settings, Warning, sample};
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";

@@ -1,13 +1,14 @@
 //! Tests of the formula language: what it accepts, what a formula means, and the errors.
 
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::field::Frame;
 use marching_particles::field::formula::{
     FUNCTIONS, Formula, FormulaError, FormulaErrorKind as Kind, MAX_DEPTH, MAX_FORMULA_BYTES, Parameter,
     utf16_offset,
 };
 use marching_particles::field::{Enclosure, Field};
-use marching_particles::math::{Bounds, Interval, Sym3};
+use marching_particles::field::{Interval, Sym3};
 
 fn parse(text: &str) -> Formula {
     Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))

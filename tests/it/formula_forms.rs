@@ -2,12 +2,12 @@
 //! becomes.
 
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::field::Frame;
 use marching_particles::field::formula::{
     Formula, FormulaError, FormulaErrorKind as Kind, Parameter, number,
 };
 use marching_particles::field::{Enclosure, Field};
-use marching_particles::math::Bounds;
 
 fn parse(text: &str) -> Formula {
     Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))

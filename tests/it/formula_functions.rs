@@ -1,6 +1,6 @@
 //! Tests of the single-precision functions against double-precision references.
 
-use marching_particles::math::functions as single;
+use marching_particles::internal::math::functions as single;
 
 /// Numbers of every magnitude: a few hundred mantissas for each exponent, in both signs, with the
 /// ends of the range.

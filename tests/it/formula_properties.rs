@@ -3,13 +3,14 @@
 
 use crate::fuzz::harness;
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::field::Frame;
+use marching_particles::field::Sym3;
 use marching_particles::field::formula::{
     FUNCTIONS, Formula, FormulaErrorKind as Kind, MAX_FORMULA_BYTES, MathGroup, MathNode,
 };
 use marching_particles::field::gallery::SURFACES;
 use marching_particles::field::{Enclosure, Field};
-use marching_particles::math::{Bounds, Sym3};
 use proptest::prelude::*;
 
 /// Strategy for formulas with all constructs of the language; `a` and `b_1` are parameters.

@@ -3,11 +3,11 @@
 
 use crate::cases;
 use crate::golden::checkout;
+use marching_particles::Bounds;
 use marching_particles::field::formula::MAX_FORMULA_BYTES;
 use marching_particles::field::gallery;
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::sampler::{Method, Sampling, Search, Settings};
-use marching_particles::session::{FieldRequest, Session};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use std::fs;

@@ -3,12 +3,13 @@
 use crate::crease_box::euler_on_grid;
 use crate::golden::checkout;
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::field::Frame;
+use marching_particles::field::Sym3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::{self, SURFACES, Surface};
 use marching_particles::field::model::MODELS;
 use marching_particles::field::{Enclosure, Field, Jet};
-use marching_particles::math::{Bounds, Sym3};
 use rand_core::Rng;
 use std::collections::BTreeSet;
 

@@ -2,9 +2,9 @@
 
 use crate::refine::assert_rings;
 use crate::runs::{begun, gallery_figures, of_gallery, sampled_in_any_steps, shared};
-use marching_particles::differential::exact_curvature;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
+use marching_particles::internal::differential::exact_curvature;
 use marching_particles::quality::Figures;
 use marching_particles::sampler::{LawKind, Method, Refusal, Sampler, Sampling, Settings, SizeMode};
 

@@ -2,11 +2,11 @@
 
 use crate::runs::{finished, run};
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::sampler::{Method, Settings};
-use marching_particles::session::{FieldRequest, Session};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 

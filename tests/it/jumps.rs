@@ -2,7 +2,7 @@
 //! what it is, once.
 
 use crate::cases;
-use marching_particles::math::Bounds;
+use marching_particles::Bounds;
 use marching_particles::{Formula, Settings, Warning, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;

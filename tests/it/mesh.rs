@@ -4,8 +4,8 @@
 
 use crate::runs::of_gallery;
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::field::gallery::{self, Surface};
-use marching_particles::math::Bounds;
 use marching_particles::mesh::Component;
 use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::Particles;

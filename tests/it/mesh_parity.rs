@@ -8,9 +8,9 @@
 use crate::golden;
 use crate::runs::run;
 use marching_particles::export::{MeshFormat, write_mesh};
+use marching_particles::internal::session::{FieldRequest, FileRequest, Session};
 use marching_particles::run::MeshAnswer;
 use marching_particles::sampler::Settings;
-use marching_particles::session::{FieldRequest, FileRequest, Session};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -2,8 +2,8 @@
 //! that they are not; and that it explains figures of the sample that are not those of the surface.
 
 use crate::runs::{finished, session};
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
-use marching_particles::math::Bounds;
 use marching_particles::sampler::{Doubt, Sampling, Search, Settings, SizeMode};
 use marching_particles::{Report, Run};
 

@@ -8,11 +8,13 @@ use crate::golden;
 use glam::DVec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
-use marching_particles::lesson::{
+use marching_particles::internal::lesson::{
     ChapterKind, Event, Lesson, LessonError, LessonField, LessonMethod, LessonPlacing, LessonSettings,
     Matched, Projection, QueueOrder, digest,
 };
-use marching_particles::paper::{ImplicitSurface, PaperRun, Particle, RadiusRule, Rules, sum_of_curvatures};
+use marching_particles::internal::paper::{
+    ImplicitSurface, PaperRun, Particle, RadiusRule, Rules, sum_of_curvatures,
+};
 use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
 use serde::{Deserialize, Serialize};
 

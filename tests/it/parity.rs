@@ -9,9 +9,9 @@
 use crate::golden;
 use marching_particles::field::model;
 use marching_particles::field::rbf::Pull;
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::pointcloud::fit_model;
 use marching_particles::sampler::Settings;
-use marching_particles::session::{FieldRequest, Session};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

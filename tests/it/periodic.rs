@@ -2,10 +2,11 @@
 //! the mesh join across them.
 
 use glam::DVec3;
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
-use marching_particles::math::Bounds;
+use marching_particles::internal::extent;
 use marching_particles::mesh::Topology;
-use marching_particles::{Field, Method, Report, Run, Sample, Settings, extent};
+use marching_particles::{Field, Method, Report, Run, Sample, Settings};
 use std::collections::BTreeSet;
 
 const GYROID: &str = "sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)";

@@ -2,10 +2,10 @@
 #![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
 
 use glam::DVec3;
+use marching_particles::internal::slices::complete;
 use marching_particles::pointcloud::normals::settle;
 use marching_particles::pointcloud::thin::{KEPT, check_spread, merge, spread, thin};
 use marching_particles::pointcloud::{Cloud, CloudError, NormalSource};
-use marching_particles::slices::complete;
 
 fn merged(cloud: Cloud) -> Cloud {
     complete(merge(cloud, |_| {})).expect("memory enough")

@@ -4,11 +4,11 @@ use core::cell::Cell;
 use glam::{DVec3, Vec3};
 use marching_particles::export;
 use marching_particles::field::model::MAX_FILE_BYTES;
+use marching_particles::internal::slices::complete;
 use marching_particles::particles::{Particles, Slots};
 use marching_particles::pointcloud::read::{FileMesh, InputFormat, ReadError, Reader, check_size};
 use marching_particles::pointcloud::{Cloud, NormalSource};
 use marching_particles::quality;
-use marching_particles::slices::complete;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 

@@ -2,12 +2,12 @@
 //! closed over small holes. The points are random ones on surfaces whose area is known.
 
 use glam::{DMat3, DQuat, DVec3, dvec3};
+use marching_particles::Bounds;
 use marching_particles::field::Field;
 use marching_particles::field::rbf::{Ball, Border, RbfData, RbfField};
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::{BeyondPoints, FieldRequest, Session, SolidSettings};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::Job;
-use marching_particles::session::{BeyondPoints, FieldRequest, Session, SolidSettings};
 use marching_particles::{Sample, Settings, sample};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;

@@ -5,10 +5,10 @@
 use crate::cases;
 use crate::runs::session;
 use glam::DVec3;
+use marching_particles::Bounds;
 use marching_particles::Warning;
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::Session;
 use marching_particles::sampler::{Doubt, Method, Sampling, Search, Settings, Unsampled};
-use marching_particles::session::Session;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 

@@ -2,8 +2,9 @@
 #![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
 
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
+use marching_particles::field::Sym3;
 use marching_particles::field::{Field, Jet};
-use marching_particles::math::{Bounds, Sym3};
 use marching_particles::particles::Particles;
 use marching_particles::quality::{CROWDED, MeasureOptions, Measurements, measure};
 use rand_core::{Rng, SeedableRng};

@@ -3,11 +3,11 @@
 
 use crate::cases;
 use crate::fuzz::{below, harness};
+use marching_particles::Bounds;
 use marching_particles::Warning;
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::{BoxFaces, FieldRequest, Session, SolidSettings};
 use marching_particles::mesh::Topology;
 use marching_particles::sampler::{Method, Sampling, Settings};
-use marching_particles::session::{BoxFaces, FieldRequest, Session, SolidSettings};
 use rand_core::SeedableRng;
 use rand_pcg::Pcg32;
 use std::collections::BTreeMap;

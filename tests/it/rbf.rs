@@ -6,15 +6,15 @@ use glam::{DVec3, Vec3};
 use marching_particles::Report;
 use marching_particles::field::Field;
 use marching_particles::field::Frame;
+use marching_particles::field::Sym3;
 use marching_particles::field::model::{self, MODELS};
 use marching_particles::field::rbf::{DataError, Pull, RbfData, RbfField};
-use marching_particles::math::Sym3;
+use marching_particles::internal::session::{FieldRequest, Session};
+use marching_particles::internal::slices::complete;
 use marching_particles::pointcloud::fit::{Fit, FitError, approximate};
 use marching_particles::pointcloud::{Cloud, CloudError, ModelInfo};
 use marching_particles::pointcloud::{fit_model, models};
 use marching_particles::sampler::{Settings, StopReason};
-use marching_particles::session::{FieldRequest, Session};
-use marching_particles::slices::complete;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 

@@ -2,9 +2,9 @@
 //! had.
 
 use crate::runs::{begun, figures, sampled, sampled_in_any_steps, shared};
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
-use marching_particles::math::Bounds;
 use marching_particles::mesh::Topology;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self};

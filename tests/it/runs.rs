@@ -1,12 +1,12 @@
 //! Runs to their end, and what is measured of them.
 
+use marching_particles::Bounds;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::{FieldRequest, Session};
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::quality::{Figures, MeasureOptions, measure};
 use marching_particles::sampler::{Sampler, Settings};
-use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Report, Run};
 use std::sync::Arc;
 

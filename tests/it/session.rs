@@ -1,13 +1,13 @@
 //! Tests of the session: fields, runs and reports.
 
+use marching_particles::Bounds;
 use marching_particles::field::BatchField;
 use marching_particles::field::formula::Parameter;
 use marching_particles::glam::DVec3;
-use marching_particles::math::Bounds;
+use marching_particles::internal::session::{FaultKind, FieldRequest, Session, describe};
 use marching_particles::run::Measured;
 use marching_particles::sample;
 use marching_particles::sampler::{GapPolicy, Method, Phase, Settings, SizeMode, StopReason};
-use marching_particles::session::{FaultKind, FieldRequest, Session, describe};
 use std::sync::Arc;
 
 fn request(text: &str) -> FieldRequest {
@@ -566,12 +566,12 @@ fn a_surface_that_was_not_refined_is_warned_of() {
 
 mod solids {
     use super::{request, run, sized};
+    use marching_particles::Bounds;
     use marching_particles::field::formula::Thickness;
-    use marching_particles::math::Bounds;
-    use marching_particles::sampler::{Settings, StopReason};
-    use marching_particles::session::{
+    use marching_particles::internal::session::{
         BeyondPoints, BoxCell, BoxFaces, BoxMode, FieldRequest, Session, SolidSettings,
     };
+    use marching_particles::sampler::{Settings, StopReason};
 
     fn solid(box_faces: BoxFaces, thickness: f64) -> SolidSettings {
         SolidSettings { box_faces, thickness: thickness.into(), ..SolidSettings::default() }

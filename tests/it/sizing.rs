@@ -2,12 +2,12 @@
 //! the grading, and the relaxation evens them out.
 
 use crate::runs::{gallery_figures, of_gallery, sampled, shared};
-use marching_particles::differential::{Curvature, curvatures};
 use marching_particles::field::gallery::{self, SURFACES};
 use marching_particles::field::{Field, Frame};
+use marching_particles::internal::differential::{Curvature, curvatures};
+use marching_particles::internal::spatial::CellGrid;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{LawKind, Sampling, Settings, SettingsError, SizeMode};
-use marching_particles::spatial::CellGrid;
 
 const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures];
 

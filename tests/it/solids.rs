@@ -1,10 +1,10 @@
 //! Solids made of the surface of a formula: closed by a box, and thickened to a shell.
 
 use glam::{DVec3, Vec3};
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::{Enclosure, Field, Frame, Piecewise, gallery};
-use marching_particles::math::Bounds;
-use marching_particles::slices::complete;
+use marching_particles::internal::slices::complete;
 
 pub(crate) fn field(text: &str) -> Formula {
     Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error:?}"))

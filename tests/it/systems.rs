@@ -2,8 +2,8 @@
 //! sources say.
 
 use marching_particles::field::gallery;
-use marching_particles::lesson::{Event, Lesson, LessonMethod, LessonSettings};
-use marching_particles::paper::Particle;
+use marching_particles::internal::lesson::{Event, Lesson, LessonMethod, LessonSettings};
+use marching_particles::internal::paper::Particle;
 use marching_particles::sampler::{LawKind, Sampling};
 
 fn start(surface: &str, settings: &LessonSettings) -> Lesson {

@@ -5,8 +5,8 @@ use core::cmp::Ordering;
 use glam::DVec3;
 use marching_particles::field::Piecewise;
 use marching_particles::field::formula::{FormulaErrorKind, PorosityError, Thickness};
-use marching_particles::session::{FaultKind, FieldRequest, Session, SolidSettings};
-use marching_particles::slices::complete;
+use marching_particles::internal::session::{FaultKind, FieldRequest, Session, SolidSettings};
+use marching_particles::internal::slices::complete;
 use marching_particles::{Bounds, Field, Formula, Sample, Settings, gallery, sample};
 
 fn gyroid() -> Formula {

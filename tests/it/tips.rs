@@ -3,8 +3,8 @@
 
 use crate::runs::finished;
 use glam::Vec3;
+use marching_particles::Bounds;
 use marching_particles::field::gallery;
-use marching_particles::math::Bounds;
 use marching_particles::mesh::triangulation::triangulate;
 use marching_particles::sampler::{Method, Refusal, Sampling, Settings};
 use marching_particles::{Formula, Warning, sample};

@@ -9,7 +9,7 @@
 #[allow(dead_code, reason = "the pictures use the rest")]
 mod stage;
 
-use marching_particles::math::Bounds;
+use marching_particles::Bounds;
 use marching_particles::{Run, Settings, gallery};
 use marching_particles_render::style::{Drawing, Style};
 use marching_particles_render::{OffScreen, Renderer};

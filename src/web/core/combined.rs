@@ -1,7 +1,7 @@
 //! Solids that a program makes of several fields.
 
 use super::Core;
-use marching_particles::session::{FaultKind, FieldRequest};
+use marching_particles::internal::session::{FaultKind, FieldRequest};
 use marching_particles::{difference, intersection, offset, smooth_union, union};
 use marching_particles_values::{answer, read};
 use std::sync::Arc;

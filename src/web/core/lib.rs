@@ -11,14 +11,14 @@ use marching_particles::field::model::SolvedModel;
 use marching_particles::field::rbf::RbfData;
 use marching_particles::field::{BatchField, BatchPiecewise, Field};
 use marching_particles::image::{AxisOrder, Section, VoxelType};
-use marching_particles::particles::Particles;
-use marching_particles::run::Value;
-use marching_particles::sampler::Sampling;
-use marching_particles::session::{
+use marching_particles::internal::session::{
     Asked, Fault, FaultKind, FieldRequest, FileRecord, FileRequest, ImageFacts, ImagePromise, Language,
     Lengths, OpenedMesh, Session, SolidSettings, SpacingText, ValueText, describe,
 };
-use marching_particles::slices::Estimated;
+use marching_particles::internal::slices::Estimated;
+use marching_particles::particles::Particles;
+use marching_particles::run::Value;
+use marching_particles::sampler::Sampling;
 use marching_particles::{Image, Spacing, TriangleMesh};
 use marching_particles_values::{answer, read, to_js};
 use std::sync::Arc;

@@ -2,13 +2,13 @@
 #![cfg(target_arch = "wasm32")]
 
 use glam::DVec3;
+use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::rbf::{Pull, RbfData, RbfField};
 use marching_particles::field::{Field, Jet};
-use marching_particles::lesson::{self, LessonError, LessonField, LessonSettings};
-use marching_particles::math::Bounds;
-use marching_particles::paper::Particle;
-use marching_particles::session::{Excess, Fault, FaultKind};
+use marching_particles::internal::lesson::{self, LessonError, LessonField, LessonSettings};
+use marching_particles::internal::paper::Particle;
+use marching_particles::internal::session::{Excess, Fault, FaultKind};
 use marching_particles_values::{answer, read, to_js};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;

@@ -665,7 +665,7 @@ fn surfaces_lists_the_gallery() {
 #[test]
 fn every_setting_is_an_option() {
     let help = stdout(&run(&["sample", "--help"]));
-    for setting in marching_particles::session::settings() {
+    for setting in marching_particles::internal::session::settings() {
         assert!(help.contains(&format!("--{}", setting.option())), "--{} is not there", setting.option());
     }
 }

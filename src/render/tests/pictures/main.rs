@@ -10,7 +10,7 @@ mod shapes;
 mod stage;
 
 use glam::DVec3;
-use marching_particles::math::Bounds;
+use marching_particles::Bounds;
 use marching_particles_render::style::{ClipBoxStyle, CuttingPlane, Drawing, Style};
 use marching_particles_render::{OffScreen, Renderer};
 use shapes::{cube, sphere, torus, torus_by_curvature};

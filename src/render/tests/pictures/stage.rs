@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use glam::dcamera::rh::{proj::directx, view::look_to_mat4};
-use marching_particles::math::Bounds;
+use marching_particles::Bounds;
 use marching_particles_render::style::{BodyStyle, Style};
 use marching_particles_render::view::View;
 use marching_particles_render::{Callbacks, Columns, OffScreen, Renderer};
