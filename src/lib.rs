@@ -106,6 +106,7 @@
 //! | smooth join | A curve along which two patches meet without an edge; `seams` in reports and columns. |
 //! | seam | A line along which fronts meet out of step: its particles have five or seven neighbours. |
 //! | gap | A place between fronts that is wide enough for a particle. |
+//! | crack | Of a mesh: an opening between patches in which no particle fits. |
 //! | hole | Of a sample: an empty disc on the surface. Of a mesh: a closed curve of open edges. |
 //! | natural neighbours, valence | The particles whose Voronoi cells share an edge in the tangent plane; their number, six in a hexagonal lattice. |
 //! | defect | A particle of a mesh whose valence is not six, or on the border not four. |

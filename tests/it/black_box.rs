@@ -104,9 +104,9 @@ fn edges_that_are_nowhere_sharp_are_left_out_where_they_fade_out() {
 #[ignore = "slow: for cargo xtask test --all"]
 fn most_blocks_that_are_smoothly_joined_to_a_ball_are_closed() {
     /// A share that was usual when the test was written.
-    const CLOSED: f64 = 0.6;
+    const CLOSED: f64 = 0.75;
     let (mut closed, mut all) = (0, 0);
-    for seed in cases::seeds(40) {
+    for seed in cases::seeds(60) {
         let mut random = Pcg32::seed_from_u64(seed);
         let mut between =
             |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
@@ -116,9 +116,13 @@ fn most_blocks_that_are_smoothly_joined_to_a_ball_are_closed() {
         let aside = DVec3::from_array([0; 3].map(|_| between(-1.0, 1.0)));
         let centre = half * aside / aside.abs().max_element();
         let (radius, reach) = (between(0.25, 0.6), between(0.1, 0.3));
+        // Every other one has rounded edges outside the block, since it is the exact distance.
+        let is_exact = seed % 2 == 0;
         let f = move |p: DVec3| {
             let p = turn * p;
-            smooth_min(block(p, half), p.distance(centre) - radius, reach)
+            let beyond = (p.abs() - half).max(DVec3::ZERO).length();
+            let from_block = if is_exact && beyond > 0.0 { beyond } else { block(p, half) };
+            smooth_min(from_block, p.distance(centre) - radius, reach)
         };
         let settings = Settings::with_count(8_000).in_box(Bounds::cube(1.9));
         let sample = sample(f, &settings).unwrap_or_else(|error| panic!("seed {seed}: {error}"));

@@ -5,7 +5,7 @@ use super::rim::Rim;
 use crate::math::{Bounds, sort_few};
 use crate::particles::Particles;
 use crate::slices::pause;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Least cosine of the angle between the normal of a triangle and that of a point on it: of 78°.
 /// The points are those inserted into the triangle, and the corners of one that fills a hole, or
@@ -13,16 +13,16 @@ use glam::Vec3;
 pub(super) const AGREEMENT: f64 = 0.2;
 /// A vertex is at the box if it is nearer to one of the faces than this many spacings. Larger: more
 /// holes are taken for borders.
-const AT_BOX: f64 = 1.5;
+pub(super) const AT_BOX: f64 = 1.5;
 /// Largest number of rounds in which holes are filled and, if that fails, enlarged by a vertex: a
 /// limit on time.
 const ROUNDS: u32 = 12;
 /// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the
 /// surface. Smaller: more holes remain; larger: more borders of the surface are closed.
 const LARGEST: usize = 24;
-/// Largest number of edges of a hole along a rim that is filled: the work grows with the cube of
-/// it, to some 10 ms at this number.
-const LARGEST_AT_RIM: usize = 96;
+/// Largest number of edges of a hole along a rim, or between patches, that is filled: the work
+/// grows with the cube of it, to some 10 ms at this number.
+pub(super) const LARGEST_AT_RIM: usize = 96;
 
 /// Distinguishes holes of the mesh from borders of the surface.
 pub(super) struct Borders<'a> {
@@ -114,8 +114,10 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) -> Vec<Fi
             if hole.len() > LARGEST_AT_RIM {
                 continue;
             }
-            let mut cut = |is_right| cutter.cut(patch, borders.rim, &hole, is_right);
+            let mut cut =
+                |is_right| cutter.cut(&hole, &Within { patch: &*patch, rim: borders.rim, is_right });
             if cut(faces_as_corners) || cut(faces_as_mean) {
+                cutter.triangles.iter().for_each(|&triangle| patch.add(triangle));
                 filled.push(Fill { hole, triangles: cutter.triangles.clone() });
             } else {
                 resisting.push(hole);
@@ -179,32 +181,64 @@ fn faces_as_mean(patch: &Patch, triangle: [u32; 3]) -> bool {
     patch.agreement(triangle).1 >= AGREEMENT
 }
 
+/// The mesh around a hole.
+pub(super) trait Around {
+    /// Whether there can be no new edge between two vertices.
+    fn is_taken(&self, a: u32, b: u32) -> bool;
+
+    /// Whether a new triangle faces as its corners do.
+    fn is_right(&self, triangle: [u32; 3]) -> bool;
+
+    /// Radius of the circle through the corners of a triangle.
+    fn circumradius(&self, triangle: [u32; 3]) -> f64;
+}
+
+/// The mesh around a hole of a patch.
+struct Within<'a, 'p> {
+    patch: &'a Patch<'p>,
+    rim: &'a Rim,
+    is_right: fn(&Patch, [u32; 3]) -> bool,
+}
+
+impl Around for Within<'_, '_> {
+    fn is_taken(&self, a: u32, b: u32) -> bool {
+        // An edge of the rim has a triangle only on its left; filling another hole may have made
+        // it.
+        a == b || self.patch.has_edge(a, b) || self.rim.has(a, b) || self.rim.has(b, a)
+    }
+
+    fn is_right(&self, triangle: [u32; 3]) -> bool {
+        (self.is_right)(self.patch, triangle)
+    }
+
+    fn circumradius(&self, triangle: [u32; 3]) -> f64 {
+        circumradius(triangle.map(|v| self.patch.place(v)))
+    }
+}
+
+/// Radius of the circle through three points; infinite if they lie on a line.
+pub(super) fn circumradius([a, b, c]: [DVec3; 3]) -> f64 {
+    let product = (b - a).length() * (c - b).length() * (a - c).length();
+    product / (2.0 * (b - a).cross(c - a).length())
+}
+
 /// Divides polygons into triangles.
 #[derive(Default)]
-struct Cutter {
+pub(super) struct Cutter {
     /// For each chord the least sum of circumradii on its left, and the vertex of the triangle at
     /// the chord.
     best: Vec<(f64, usize)>,
-    triangles: Vec<[u32; 3]>,
+    /// The triangles of the last hole that could be filled.
+    pub(super) triangles: Vec<[u32; 3]>,
 }
 
 impl Cutter {
-    /// Fills a hole with the triangles whose circumradii have the least sum, if there are any that
-    /// are right and share no edge with the mesh or its rim except those of the hole. Returns
-    /// whether there were.
-    fn cut(
-        &mut self,
-        patch: &mut Patch,
-        rim: &Rim,
-        hole: &[u32],
-        is_right: fn(&Patch, [u32; 3]) -> bool,
-    ) -> bool {
+    /// Fills a hole, which is on the left of its vertices in their order, with the triangles whose
+    /// circumradii have the least sum, if there are any that are right and have no edge that is
+    /// taken except those of the hole. Returns whether there are.
+    pub(super) fn cut(&mut self, hole: &[u32], around: &dyn Around) -> bool {
         let n = hole.len();
         let at = |i: usize, j: usize| i * n + j;
-        // An edge of the rim has a triangle only on its left; filling another hole may have made
-        // it.
-        let is_taken =
-            |patch: &Patch, a: u32, b: u32| a == b || patch.has_edge(a, b) || rim.has(a, b) || rim.has(b, a);
         self.best.clear();
         self.best.resize(n * n, (f64::INFINITY, 0));
         for i in 0..n - 1 {
@@ -213,14 +247,14 @@ impl Cutter {
         for span in 2..n {
             for i in 0..n - span {
                 let j = i + span;
-                if span + 1 < n && is_taken(patch, hole[i], hole[j]) {
+                if span + 1 < n && around.is_taken(hole[i], hole[j]) {
                     continue;
                 }
                 for k in i + 1..j {
                     let rest = self.best[at(i, k)].0 + self.best[at(k, j)].0;
                     let triangle = [hole[i], hole[k], hole[j]];
-                    if rest < self.best[at(i, j)].0 && is_right(patch, triangle) {
-                        let sum = rest + patch.circumradius(triangle);
+                    if rest < self.best[at(i, j)].0 && around.is_right(triangle) {
+                        let sum = rest + around.circumradius(triangle);
                         if sum < self.best[at(i, j)].0 {
                             self.best[at(i, j)] = (sum, k);
                         }
@@ -244,11 +278,7 @@ impl Cutter {
         }
         // A hole that visits a vertex twice may use a chord twice.
         chords.sort_unstable();
-        if chords.windows(2).any(|pair| pair[0] == pair[1]) {
-            return false;
-        }
-        self.triangles.iter().for_each(|&triangle| patch.add(triangle));
-        true
+        chords.windows(2).all(|pair| pair[0] != pair[1])
     }
 }
 
@@ -271,14 +301,6 @@ pub(super) fn unpinch(patch: &mut Patch, rim: &Rim) {
 mod tests {
     use super::super::patch::with_plane;
     use super::*;
-    use glam::DVec3;
-
-    /// Product of the sides over four times the area.
-    fn circumradius([a, b, c]: [DVec3; 3]) -> f64 {
-        let (p, q, r) = (b.distance(c), c.distance(a), a.distance(b));
-        let s = 0.5 * (p + q + r);
-        p * q * r / (4.0 * (s * (s - p) * (s - q) * (s - r)).sqrt())
-    }
 
     /// Least sum of circumradii over all ways to divide a convex polygon, tried one by one.
     fn least_sum(polygon: &[DVec3]) -> f64 {
@@ -303,9 +325,10 @@ mod tests {
         with_plane(&[corners, others].concat(), triangles, |patch, tree, in_tree| {
             let edges = rim.iter().map(|edge| edge.map(|v| in_tree[v as usize])).collect();
             let rim = Rim::new(edges, patch.position, patch.normal);
-            let is_cut = Cutter::default().cut(patch, &rim, &in_tree[..corners.len()], faces_as_corners);
-            let all = patch.triangles().map(|t| t.map(|v| tree.origin[v as usize]));
-            is_cut.then(|| all.skip(triangles.len()).collect())
+            let mut cutter = Cutter::default();
+            let around = Within { patch, rim: &rim, is_right: faces_as_corners };
+            let is_cut = cutter.cut(&in_tree[..corners.len()], &around);
+            is_cut.then(|| cutter.triangles.iter().map(|t| t.map(|v| tree.origin[v as usize])).collect())
         })
     }
 

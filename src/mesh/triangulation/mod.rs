@@ -15,12 +15,14 @@
 //!    (`Triangulation::judged`).
 //! 6. *Points left out* are inserted into the triangle below them.
 //! 7. *Borders* lose vertices at which the surface touches itself.
+//! 8. *Cracks* between patches are filled once all patches are joined.
 //!
 //! The stars are those of Gopi, Krishnan and Silva, "Surface Reconstruction based on Lower
 //! Dimensional Localized Delaunay Triangulation", Computer Graphics Forum 19(3), 2000; holes are
 //! divided by the dynamic programme of Klincsek, "Minimal Triangulations of Polygonal Domains",
 //! Annals of Discrete Mathematics 9, 1980.
 
+mod cracks;
 mod creases;
 mod holes;
 mod insert;
@@ -100,6 +102,19 @@ impl Triangulation {
         gone.sort_unstable();
         let mut triangles = self.into_corners();
         triangles.retain(|triangle| gone.binary_search(triangle).is_err());
+        Joined { triangles, unfilled, filled }.counted(particles).await
+    }
+
+    /// The triangulation with the [cracks](cracks) between its patches filled.
+    async fn without_cracks(self, particles: &Particles, bounds: Option<&Bounds>) -> Self {
+        let found = cracks::fill(&self, particles, bounds).await;
+        if found.is_empty() {
+            return self;
+        }
+        let (unfilled, mut filled) = (self.unfilled.clone(), self.filled.clone());
+        let mut triangles = self.into_corners();
+        triangles.extend(found.iter().flat_map(|fill| fill.triangles.iter().copied()));
+        filled.extend(found);
         Joined { triangles, unfilled, filled }.counted(particles).await
     }
 
@@ -308,7 +323,11 @@ pub(crate) async fn join(particles: &Particles, sheets: &Sheets, bounds: Option<
         pause().await;
         creases::separate(&mut whole.triangles, particles);
     }
-    whole.counted(particles).await
+    let mesh = whole.counted(particles).await;
+    if particles.patch.is_empty() || mesh.topology.borders.is_empty() {
+        return mesh;
+    }
+    mesh.without_cracks(particles, bounds).await
 }
 
 impl Sheet {

@@ -276,13 +276,6 @@ impl<'a> Patch<'a> {
         };
         (corners.into_iter().map(|corner| normal.dot(corner)).fold(1.0, f64::min), normal.dot(mean))
     }
-
-    /// Radius of the circle through the corners; infinite if they lie on a line.
-    pub(super) fn circumradius(&self, triangle: [u32; 3]) -> f64 {
-        let [a, b, c] = triangle.map(|v| self.place(v));
-        let product = (b - a).length() * (c - b).length() * (a - c).length();
-        product / (2.0 * self.area_vector(triangle).length())
-    }
 }
 
 /// A number in 0 … 4 that grows with the angle of (x, y) from the x axis, one for each quarter

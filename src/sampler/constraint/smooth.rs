@@ -155,9 +155,7 @@ impl Meeting {
         let [right, left] = [sides[1], sides[0]];
         // Counter-clockwise, the right side gives way to the left one ahead.
         let [position, _] = changes_around(probe, [right, left], self.position, up, length)?;
-        let position = position?;
-        let way = (position - self.position).normalize_or_zero();
-        Some(Self { position, tangent: way, ..*self })
+        self.moved(position?, length)
     }
 
     /// The next point of a smooth join, `length` away, with these patches on its left and right.
@@ -176,10 +174,14 @@ impl Meeting {
             let slope = SQRT_3 * (1.0 - 2.0 * share);
             landed(probe, self.position + (ahead + aside * slope).normalize_or_zero() * length, length)
         })?;
-        let way = (position - self.position).normalize_or_zero();
-        // Written so that NaN fails.
-        let is_ahead = way.dot(ahead) >= MOST_TURN;
-        is_ahead.then_some(Self { position, tangent: way, ..*self })
+        self.moved(position, length).filter(|next| next.tangent.dot(ahead) >= MOST_TURN)
+    }
+
+    /// The smooth join at a point to which a step of this length has led; none if it is less than
+    /// half as far away, as where the step was projected back to its start.
+    fn moved(&self, position: DVec3, length: f64) -> Option<Self> {
+        let way = position - self.position;
+        (way.length() >= 0.5 * length).then(|| Self { position, tangent: way.normalize_or_zero(), ..*self })
     }
 
     /// The point of the smooth join near the point `place` of a chord with the direction `way`.
