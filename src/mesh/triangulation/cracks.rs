@@ -12,8 +12,8 @@ use crate::particles::Particles;
 use crate::slices::pause;
 use glam::DVec3;
 
-/// Largest distance across a crack, in distances between the vertices around it, unless one of these
-/// is longer. A round opening with nine vertices around it is wider.
+/// Largest distance across a crack, in distances between the vertices around it, unless one of
+/// these is longer. A round opening with nine vertices around it is wider.
 const WIDEST: f64 = 2.5;
 
 /// The mesh around a crack. Each particle is one vertex, its first row.
