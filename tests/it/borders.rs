@@ -1,8 +1,9 @@
 //! Surfaces that the box cuts, by the second method: the border lies on the box, and nothing is
 //! lost without a word.
 
+use crate::cases;
 use crate::runs::{begun, figures, sampled, sampled_in_any_steps};
-use glam::Vec3;
+use glam::{DMat3, DVec3, Vec3};
 use marching_particles::Bounds;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
@@ -11,6 +12,8 @@ use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Sampling, Settings, SizeMode};
 use proptest::prelude::*;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
 
 fn settings(method: Method, count: u32, seed: u64) -> Settings {
     settings!(method, size_mode: SizeMode::Count, count, seed; ..Settings::default())
@@ -81,6 +84,48 @@ fn gyroid_and_schwarz_surface_come_out_in_order() {
     }
 }
 
+/// A gyroid of up to two and a half periods in a box of ±1, turned and moved at random.
+fn random_gyroid(random: &mut impl FnMut(f64, f64) -> f64) -> String {
+    let way = DVec3::new(random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0)).normalize_or(DVec3::X);
+    let turn = DMat3::from_axis_angle(way, random(0.0, 3.0));
+    let scale = core::f64::consts::PI * random(1.0, 2.5);
+    let [a, b, c] = [0, 1, 2].map(|k| {
+        let row = turn.row(k) * scale;
+        format!("({}*x + ({})*y + ({})*z + {})", row.x, row.y, row.z, random(0.0, 6.3))
+    });
+    format!("sin{a}*cos{b} + sin{b}*cos{c} + sin{c}*cos{a}")
+}
+
+#[test]
+#[ignore = "slow: for cargo xtask test --all"]
+fn most_gyroids_are_refined_wherever_the_box_cuts_them() {
+    /// A share that was usual when the test was written.
+    const REFINED: f64 = 0.85;
+    let (mut done, mut all) = (0, 0);
+    for seed in cases::seeds(30) {
+        let mut random = Pcg32::seed_from_u64(seed);
+        let mut between =
+            |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let (formula, bounds) = (random_gyroid(&mut between), Bounds::cube(1.0));
+        let sampler = refined(&formula, &bounds, if seed % 2 == 0 { 3_000 } else { 8_000 });
+        all += 1;
+        match sampler.counts().refusal {
+            None => {
+                let particles = sampler.particles();
+                let topology = Topology::new(sampler.triangles(), particles.len());
+                assert!(topology.is_manifold(), "seed {seed}");
+                let place = |&v: &u32| particles.local[v as usize].as_dvec3();
+                let is_on_box = |p: &DVec3| 1.0 - p.abs().max_element() <= 1e-6;
+                let off = topology.borders.iter().flatten().map(place).find(|p| !is_on_box(p));
+                assert_eq!(off, None, "seed {seed}: on the border and not on the box");
+                done += 1;
+            }
+            Some(refusal) => println!("seed {seed}: {refusal:?}"),
+        }
+    }
+    cases::assert_share(done, all, REFINED, "gyroids that are refined");
+}
+
 #[test]
 fn the_border_lies_on_the_box_and_the_topology_is_that_of_the_surface() {
     let sphere = "x^2 + y^2 + z^2 = 1";
@@ -88,6 +133,8 @@ fn the_border_lies_on_the_box_and_the_topology_is_that_of_the_surface() {
     // Formula, box, particles, Euler number.
     for (formula, bounds, count, euler) in [
         (gyroid, Bounds::cube(6.2), 8_000, -53),
+        // Through corners of the box.
+        (gyroid, Bounds::cube(core::f64::consts::TAU), 3_000, -53),
         ("cos(x) + cos(y) + cos(z) = 0", Bounds::cube(6.3), 8_000, -32),
         ("z = 0", Bounds::cube(1.0), 1_500, 1),
         ("z = 0.1 sin(3 x)", Bounds::cube(1.0), 1_500, 1),

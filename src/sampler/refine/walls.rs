@@ -42,6 +42,11 @@ impl Planes {
         self.count() > 1
     }
 
+    /// Whether planes of the box along all axes meet, in a corner of the box.
+    pub(super) fn are_all(self) -> bool {
+        self.free() == Vec3::ZERO
+    }
+
     /// Whether the particle lies on a crease.
     pub(super) fn is_crease(self) -> bool {
         !self.common(Self::CREASE).is_inner()
@@ -60,6 +65,11 @@ impl Planes {
     /// The planes that are in both sets.
     pub(super) fn common(self, other: Self) -> Self {
         Self(self.0 & other.0)
+    }
+
+    /// The planes that are not in the other set.
+    pub(super) fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 
     /// The planes that are in either set.
@@ -190,6 +200,11 @@ impl Walls {
     ) -> Option<Vec3> {
         if planes.is_crease() {
             return Some(p);
+        }
+        if planes.are_all() {
+            // Where the surface has moved away from it, the mesh cannot follow.
+            let is_near = value.abs() <= gradient.length() * self.slack;
+            return (!may_leave || is_near).then(|| self.pinned(p, planes));
         }
         let step = if planes.is_inner() {
             let inverse_slope = 1.0 / gradient.length();

@@ -9,7 +9,7 @@ use super::super::net::{Ground, Net};
 use super::super::refusal::Refusal;
 use super::super::walls::{Planes, Site};
 use super::land_on;
-use crate::math::{Bounds, NONE};
+use crate::math::{Bounds, Forest, NONE};
 use crate::mesh::half_edge::{HalfEdges, next, previous};
 use glam::Vec3;
 
@@ -22,6 +22,10 @@ const FLAT: f32 = 0.05;
 /// A front that cannot grow beyond the box ends at most this share of the spacing before it.
 /// Smaller: fewer fields that end at the box are refined.
 const OPEN_END: f32 = 1.3;
+/// Particles nearer to each other than this share of the spacing are at one place: where the
+/// surface passes that near a corner of the box, the corner is taken for a point of it. Larger:
+/// corners farther from the surface than refined particles may be.
+const ONE_PLACE: f32 = 1e-3;
 /// Halvings of an edge between its crossing with a plane and that of the surface, at most: they end
 /// where single precision does.
 const HALVINGS: u32 = 24;
@@ -61,6 +65,8 @@ pub(in super::super) fn clip(net: &mut Net, ground: &mut Ground, spacing: f32) -
         *p = net.walls.pinned(p.clamp(net.walls.lo, net.walls.hi), planes);
     }
     if is_cut {
+        drop_points(net, spacing)?;
+        join_corners(net, spacing);
         tidy(net, spacing);
     }
     let is_off = |&h: &u32| {
@@ -147,8 +153,32 @@ fn split(net: &mut Net, h: u32, site: Site) {
 
 /// Drops the faces of the mesh with a vertex beyond a face of the box.
 fn drop_beyond(net: &mut Net, plane: usize) -> Result<(), Refusal> {
-    let kept: Vec<[u32; 3]> =
-        net.mesh.triangles().filter(|corners| !corners.iter().any(|&v| is_beyond(net, v, plane))).collect();
+    keep(net, |net, corners| !corners.iter().any(|&v| is_beyond(net, v, plane)))
+}
+
+/// Drops the pieces of the mesh that are no larger than a point: the surface touches the box there
+/// from outside, at a corner or along a face.
+fn drop_points(net: &mut Net, spacing: f32) -> Result<(), Refusal> {
+    let mut pieces = Forest::new(net.position.len());
+    for [a, b, c] in net.mesh.triangles() {
+        pieces.join(a, b);
+        pieces.join(a, c);
+    }
+    // Whether any particle of a piece is away from the first one.
+    let mut is_wide = vec![false; net.position.len()];
+    for v in 0..net.position.len() as u32 {
+        let first = pieces.find(v) as usize;
+        is_wide[first] |= net.position[v as usize].distance(net.position[first]) > ONE_PLACE * spacing;
+    }
+    if net.mesh.triangles().all(|[a, ..]| is_wide[pieces.find(a) as usize]) {
+        return Ok(());
+    }
+    keep(net, |_, [a, ..]| is_wide[pieces.find(*a) as usize])
+}
+
+/// Keeps some faces of the mesh, and drops the others.
+fn keep(net: &mut Net, mut is_kept: impl FnMut(&Net, &[u32; 3]) -> bool) -> Result<(), Refusal> {
+    let kept: Vec<[u32; 3]> = net.mesh.triangles().filter(|corners| is_kept(net, corners)).collect();
     let at = net.position.first().copied().unwrap_or_default().into();
     net.mesh = HalfEdges::from_triangles(net.position.len(), &kept).ok_or(Refusal::Cut { at })?;
     if kept.is_empty() { Err(Refusal::Cut { at }) } else { Ok(()) }
@@ -192,6 +222,28 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
         }
     }
     Ok(())
+}
+
+/// Joins particles on two planes each that are at one place. Where the surface passes through a
+/// corner of the box, each of its edges has been cut there.
+fn join_corners(net: &mut Net, spacing: f32) {
+    for h in 0..net.mesh.half_edge_slots() as u32 {
+        if !net.mesh.has_half_edge(h) || net.mesh.twin(h) != NONE {
+            continue;
+        }
+        let (a, b) = (net.mesh.origin(h), net.mesh.target(h));
+        let [first, second] = [a, b].map(|v| net.site(v));
+        let are_corners = first.planes.of_box().is_corner() && second.planes.of_box().is_corner();
+        let is_one_place = first.position.distance(second.position) <= ONE_PLACE * spacing;
+        let are_free = !first.planes.is_crease() && !second.planes.is_crease();
+        if are_corners && is_one_place && are_free && net.mesh.can_collapse(h) {
+            let planes = first.planes.joined(second.planes);
+            net.mesh.begin();
+            net.mesh.collapse(h);
+            net.mesh.keep();
+            net.put(b, Site { position: net.walls.pinned(second.position, planes), planes, ..second });
+        }
+    }
 }
 
 /// Collapses the short edges at the border, and makes edges Delaunay by flips. Every round but the

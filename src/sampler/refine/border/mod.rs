@@ -120,7 +120,22 @@ impl Net {
         if common.is_inner() {
             return common;
         }
-        if self.is_border_edge(a, b) { common } else { Planes::INNER }
+        if self.is_border_edge(a, b) { self.arc_between(a, b).unwrap_or(common) } else { Planes::INNER }
+    }
+
+    /// If two particles lie on one edge of the box: the plane along which the border runs between
+    /// them. At each of them the border changes from one face at the edge to the other.
+    fn arc_between(&self, a: u32, b: u32) -> Option<Planes> {
+        let common = self.common_planes(a, b).of_box();
+        if common.count() != 2 {
+            return None;
+        }
+        [[a, b], [b, a]].into_iter().find_map(|[v, w]| {
+            let [before, after] = self.border_edges(v);
+            let beside = [self.mesh.origin(before), self.mesh.target(after)].into_iter().find(|&u| u != w)?;
+            let other = self.common_planes(beside, v);
+            (other.count() == 1 && other.common(common) == other).then(|| common.without(other))
+        })
     }
 
     /// Whether the border of the surface runs along the edge between two particles.
