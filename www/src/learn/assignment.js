@@ -50,8 +50,8 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
   const { text, keep } = kept(`assignment.${packTask(task)}`);
   for (const [k, value] of text.split('\0').entries()) if (boxes[k]) boxes[k].value = value;
   host.addEventListener('input', () => keep(boxes.map(({ value }) => value).join('\0')));
-  /** @returns {Work} */
-  const workOf = () => {
+  /** @param {Awaited<ReturnType<typeof createBench>>} bench @returns {Work} */
+  const workOf = (bench) => {
     return {
       assignment: task.title,
       surface,
@@ -63,8 +63,10 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
     };
   };
   const save = async () => {
+    // Right after the page was opened there may be no bench yet.
+    const bench = await opening;
     await bench.settled();
-    const text = `${JSON.stringify(workOf(), null, 2)}\n`;
+    const text = `${JSON.stringify(workOf(bench), null, 2)}\n`;
     const blob = new Blob([text], { type: 'application/json' });
     download(blob, `${fileName([task.title, group.box.value, name.box.value])}.json`);
   };
@@ -90,8 +92,11 @@ export async function mountAssignment(host, task, { lab, surface, stops }) {
   );
   host.setAttribute('aria-labelledby', id);
   host.hidden = false;
-  const bench = await createBench(benchHost, lab, { locks: task.locks });
-  void bench.open(task.setup);
+  const opening = createBench(benchHost, lab, { locks: task.locks }).then((bench) => {
+    void bench.open(task.setup);
+    return bench;
+  });
+  await opening;
 }
 
 /**
