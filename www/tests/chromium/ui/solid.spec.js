@@ -29,8 +29,9 @@ test('a periodic surface becomes a closed part, and a surface again', { tag: '@a
   await test.step('a formula makes the thickness vary', async () => {
     await thickness.fill('1 + 0.05z');
     await thickness.press('Enter');
+    // The core reads the text first.
+    await expect.poll(async () => (await state(page)).settings.thickness).toBe('1 + 0.05z');
     await settled(page);
-    expect((await state(page)).settings.thickness).toBe('1 + 0.05z');
     await expect(thickness).toHaveValue('1 + 0.05z');
     await page.getByRole('button', { name: 'Undo' }).click();
     await settled(page);
