@@ -12,11 +12,14 @@ export class Dimmer {
   #from;
   #to;
   #startS;
+  /** The share that was read last. */
+  #read;
 
   constructor() {
     this.#from = 0;
     this.#to = 0;
     this.#startS = -Infinity;
+    this.#read = 0;
   }
 
   /** Whether the picture is dimmed or dimming. */
@@ -42,11 +45,12 @@ export class Dimmer {
   /** Returns the share by which the picture is dimmed. @param {number} nowS @param {boolean} calm */
   at(nowS, calm) {
     const t = calm ? 1 : Math.min(1, (nowS - this.#startS) / DIM_S);
-    return this.#from + (this.#to - this.#from) * t;
+    this.#read = t < 1 ? this.#from + (this.#to - this.#from) * t : this.#to;
+    return this.#read;
   }
 
-  /** @param {number} nowS */
-  moving(nowS) {
-    return nowS - this.#startS < DIM_S;
+  /** Whether the share that was read last is not the final one, however long ago: a picture may take longer to paint. */
+  get moving() {
+    return this.#read !== this.#to;
   }
 }

@@ -470,7 +470,7 @@ export class Viewer {
     // Without particles the colours have no range; the previous legend stays.
     if (this.due.legend && this.columns.count > 0) this.#tellLegend();
     const revealing = this.#tellReveal(nowS);
-    const dimming = this.dimmer.moving(nowS);
+    const dimming = this.dimmer.moving;
     if (dimming) this.due.style = true;
     if (outcome === 'drawn') this.#judge(passedS);
     const { upload } = this;

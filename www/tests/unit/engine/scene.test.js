@@ -77,8 +77,19 @@ describe('dimming', () => {
     expect(half).toBeLessThan(dimmer.at(2, false));
     dimmer.set(false, 1.075, false);
     expect(dimmer.at(1.075, false)).toBeCloseTo(half);
+    expect(dimmer.moving).toBe(true);
     expect(dimmer.at(2, false)).toBe(0);
-    expect(dimmer.moving(2)).toBe(false);
+    expect(dimmer.moving).toBe(false);
+  });
+
+  test('moves until its end is drawn, though a picture takes longer than the fade', () => {
+    const dimmer = new Dimmer();
+    dimmer.set(true, 1, false);
+    // The first picture begins with the fade and is complete long after it.
+    dimmer.at(1, false);
+    expect(dimmer.moving).toBe(true);
+    dimmer.at(5, false);
+    expect(dimmer.moving).toBe(false);
   });
 
   test('is there at once where motion is not wanted', () => {
