@@ -11,8 +11,8 @@ use marching_particles::run::{Cut, Severity};
 use serde_json::Value;
 use std::io::{self, Write};
 
-/// Width of the labels: the longest in the table, of 22 characters, and a gap.
-const LABEL: usize = 26;
+/// Width of the labels: the longest in the table, of 31 characters, and a gap.
+const LABEL: usize = 33;
 /// Width of a column of figures: its longest head, `after front`, and a gap.
 const COLUMN: usize = 13;
 

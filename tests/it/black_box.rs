@@ -5,7 +5,7 @@ use crate::cases;
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
 use marching_particles::field::{FnField, PiecewiseFn};
 use marching_particles::{Bounds, Method, Sample, Settings, sample, smooth_union, union};
-use rand_core::{Rng, SeedableRng};
+use rand_core::SeedableRng;
 use rand_pcg::Pcg32;
 
 /// A place of a solid that is turned and moved.
@@ -108,8 +108,7 @@ fn most_blocks_that_are_smoothly_joined_to_a_ball_are_closed() {
     let (mut closed, mut all) = (0, 0);
     for seed in cases::seeds(60) {
         let mut random = Pcg32::seed_from_u64(seed);
-        let mut between =
-            |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let mut between = |lo, hi| cases::between(&mut random, lo, hi);
         let half = DVec3::from_array([0; 3].map(|_| between(0.4, 0.8)));
         let way = dvec3(between(-1.0, 1.0), between(-1.0, 1.0), 1.0).normalize_or_zero();
         let turn = DMat3::from_axis_angle(way, between(0.0, 3.0));
@@ -252,8 +251,7 @@ fn what_functions_with_edges_are_put_together_to_has_all_of_them() {
 fn bodies_that_touch_along_a_part_of_a_face_are_one() {
     for seed in cases::seeds(4) {
         let mut random = Pcg32::seed_from_u64(seed);
-        let mut between =
-            |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let mut between = |lo, hi| cases::between(&mut random, lo, hi);
         let half = DVec3::from_array([0; 3].map(|_| between(0.5, 0.7)));
         let (aside, radius, height) = (between(-0.15, 0.15), between(0.15, 0.25), between(0.3, 0.6));
         let way = dvec3(between(-1.0, 1.0), between(-1.0, 1.0), 1.0).normalize_or_zero();
@@ -277,8 +275,7 @@ fn pieces_that_bend_between_points_of_their_edges_end_at_corners() {
     type Figure = Box<dyn Fn(DVec2) -> f64 + Send + Sync>;
     for seed in cases::seeds(4) {
         let mut random = Pcg32::seed_from_u64(seed);
-        let mut between =
-            |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let mut between = |lo, hi| cases::between(&mut random, lo, hi);
         let way = dvec3(between(-1.0, 1.0), between(-1.0, 1.0), 1.0).normalize_or_zero();
         let turn = DMat3::from_axis_angle(way, between(0.0, 1.2));
         let (half, radius) = (dvec2(between(0.3, 0.6), between(0.2, 0.4)), between(0.15, 0.3));

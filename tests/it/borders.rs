@@ -12,7 +12,7 @@ use marching_particles::mesh::triangulation::{Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Sampling, Settings, SizeMode};
 use proptest::prelude::*;
-use rand_core::{Rng, SeedableRng};
+use rand_core::SeedableRng;
 use rand_pcg::Pcg32;
 
 fn settings(method: Method, count: u32, seed: u64) -> Settings {
@@ -104,8 +104,7 @@ fn most_gyroids_are_refined_wherever_the_box_cuts_them() {
     let (mut done, mut all) = (0, 0);
     for seed in cases::seeds(30) {
         let mut random = Pcg32::seed_from_u64(seed);
-        let mut between =
-            |lo: f64, hi: f64| lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let mut between = |lo, hi| cases::between(&mut random, lo, hi);
         let (formula, bounds) = (random_gyroid(&mut between), Bounds::cube(1.0));
         let sampler = refined(&formula, &bounds, if seed % 2 == 0 { 3_000 } else { 8_000 });
         all += 1;

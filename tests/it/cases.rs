@@ -5,6 +5,8 @@
 //! --all`), a larger number more than that, and `MARCHING_PARTICLES_SEED` repeats a run: each test
 //! prints the seed of a case that fails.
 
+use rand_core::Rng;
+use rand_pcg::Pcg32;
 use std::env;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -38,6 +40,11 @@ pub(crate) fn count(all: u64) -> u64 {
 /// The seeds of the cases that a run takes where all of them are `all`.
 pub(crate) fn seeds(all: u64) -> Range<u64> {
     first()..first() + count(all)
+}
+
+/// A random number between two others.
+pub(crate) fn between(random: &mut Pcg32, lo: f64, hi: f64) -> f64 {
+    lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX)
 }
 
 /// Proptest's settings for a run that takes its part of `all` cases.

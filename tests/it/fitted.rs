@@ -1,7 +1,7 @@
 //! Random surfaces in boxes that are fitted to them: with parts thinner than the cells of a grid,
 //! and with poles and jumps, at which f changes its sign without a surface.
 
-use crate::cases;
+use crate::cases::{self, between};
 use glam::DVec3;
 use marching_particles::Bounds;
 use marching_particles::field::FnField;
@@ -9,11 +9,6 @@ use marching_particles::internal::extent::{self, Extent, Reach};
 use marching_particles::{Formula, Settings, Warning, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-
-/// A random number between two others.
-fn between(random: &mut Pcg32, lo: f64, hi: f64) -> f64 {
-    lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX)
-}
 
 /// A random unit vector.
 fn direction(random: &mut Pcg32) -> DVec3 {

@@ -2,15 +2,11 @@
 //! places and slopes, convex ones, boxes, cylinders and balls, steep and flat functions among them,
 //! with particles that are small beside them.
 
-use crate::cases;
+use crate::cases::{self, between};
 use glam::{DVec3, dvec3};
 use marching_particles::{Field, Formula, Sample, Settings, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-
-fn between(random: &mut Pcg32, lo: f64, hi: f64) -> f64 {
-    lo + (hi - lo) * f64::from(random.next_u32()) / f64::from(u32::MAX)
-}
 
 fn place(random: &mut Pcg32, half: f64) -> DVec3 {
     dvec3(between(random, -half, half), between(random, -half, half), between(random, -half, half))

@@ -31,7 +31,7 @@ struct Cracks<'a> {
     least: f64,
 }
 
-/// Divides the narrow cracks into triangles by rows. `bounds` is the box that cuts the surface.
+/// Divides the cracks into triangles by rows. `bounds` is the box that cuts the surface.
 pub(super) async fn fill(mesh: &Triangulation, particles: &Particles, bounds: Option<&Bounds>) -> Vec<Fill> {
     let mut cracks = Cracks::new(mesh, particles);
     let mut cutter = Cutter::default();
@@ -126,8 +126,8 @@ impl<'a> Cracks<'a> {
         2 * border.iter().filter(|&&v| from_face(self.place(v)) <= reach).count() > border.len()
     }
 
-    /// The rows of a triangle's corners whose normals agree with it best, and the cosine of the
-    /// angle between the triangle's normal and the mean of these.
+    /// For each corner of a triangle the row whose normal agrees best with the triangle's, and the
+    /// cosine of the angle between that and the mean of these normals.
     fn facing(&self, triangle: [u32; 3]) -> ([u32; 3], f64) {
         let [a, b, c] = triangle.map(|v| self.place(v));
         let up = (b - a).cross(c - a).normalize_or_zero();
@@ -170,19 +170,19 @@ mod tests {
     use crate::particles::Particles;
     use glam::Vec3;
 
-    /// A square of points in a plane, which is divided into two patches along its middle. The
-    /// crease there is known but for the places of `unknown` particles.
-    fn square(unknown: core::ops::Range<i16>) -> Particles {
+    /// A square of points in a plane, divided into two patches by a crease along its middle. The
+    /// crease lacks the particles with these numbers, which begin with 0 in its middle.
+    fn square(missing: core::ops::Range<i16>) -> Particles {
         const HALF: i16 = 6;
         let place = |x: f32, y: i16| Vec3::new(x, f32::from(y) + 0.03 * x, 0.0);
         let mut particles = Particles::default();
-        for y in (-HALF..=HALF).filter(|y| !unknown.contains(y)) {
+        for y in (-HALF..=HALF).filter(|y| !missing.contains(y)) {
             let first = particles.len() as u32;
             for patch in 0..2 {
                 particles.push_seed(place(0.0, y), Vec3::Z, 0.5, Some(patch));
                 particles.twins.push(first);
             }
-            if y > -HALF && !unknown.contains(&(y - 1)) {
+            if y > -HALF && !missing.contains(&(y - 1)) {
                 // Patch 0 is on the left of the way up.
                 particles.segments.push([first - 2, first]);
                 particles.sides.push(vec![[0, 1]]);
@@ -198,11 +198,11 @@ mod tests {
 
     #[test]
     fn a_crack_along_a_crease_is_filled() {
-        for unknown in [0..0, 0..1, -1..2, -3..3] {
-            let mesh = triangulate(&square(unknown.clone()), None);
-            assert!(mesh.topology.is_manifold(), "{unknown:?}");
-            assert_eq!((mesh.topology.borders.len(), mesh.topology.euler()), (1, 1), "{unknown:?}");
-            assert!(mesh.left_out.is_empty(), "{unknown:?}");
+        for missing in [0..0, 0..1, -1..2, -3..3] {
+            let mesh = triangulate(&square(missing.clone()), None);
+            assert!(mesh.topology.is_manifold(), "{missing:?}");
+            assert_eq!((mesh.topology.borders.len(), mesh.topology.euler()), (1, 1), "{missing:?}");
+            assert!(mesh.left_out.is_empty(), "{missing:?}");
         }
     }
 }

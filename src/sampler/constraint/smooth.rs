@@ -177,8 +177,8 @@ impl Meeting {
         self.moved(position, length).filter(|next| next.tangent.dot(ahead) >= MOST_TURN)
     }
 
-    /// The smooth join at a point to which a step of this length has led; none if it is less than
-    /// half as far away, as where the step was projected back to its start.
+    /// The smooth join at a point to which a step of this length has led. None if the point is less
+    /// than half of that away: a step that is projected back to its start would be repeated.
     fn moved(&self, position: DVec3, length: f64) -> Option<Self> {
         let way = position - self.position;
         (way.length() >= 0.5 * length).then(|| Self { position, tangent: way.normalize_or_zero(), ..*self })

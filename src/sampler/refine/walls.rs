@@ -42,7 +42,7 @@ impl Planes {
         self.count() > 1
     }
 
-    /// Whether planes of the box along all axes meet, in a corner of the box.
+    /// Whether planes across all three axes meet here, as in a corner of the box.
     pub(super) fn are_all(self) -> bool {
         self.free() == Vec3::ZERO
     }
@@ -202,7 +202,7 @@ impl Walls {
             return Some(p);
         }
         if planes.are_all() {
-            // Where the surface has moved away from it, the mesh cannot follow.
+            // A particle at a corner of the box cannot follow a surface that moves away.
             let is_near = value.abs() <= gradient.length() * self.slack;
             return (!may_leave || is_near).then(|| self.pinned(p, planes));
         }

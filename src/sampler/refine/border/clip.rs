@@ -23,8 +23,8 @@ const FLAT: f32 = 0.05;
 /// Smaller: fewer fields that end at the box are refined.
 const OPEN_END: f32 = 1.3;
 /// Particles nearer to each other than this share of the spacing are at one place: where the
-/// surface passes that near a corner of the box, the corner is taken for a point of it. Larger:
-/// corners farther from the surface than refined particles may be.
+/// surface passes that near a corner of the box, the corner is taken for a point of it. Larger: the
+/// corner may be farther from the surface than other refined particles.
 const ONE_PLACE: f32 = 1e-3;
 /// Halvings of an edge between its crossing with a plane and that of the surface, at most: they end
 /// where single precision does.
