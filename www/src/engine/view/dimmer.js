@@ -49,7 +49,7 @@ export class Dimmer {
     return this.#read;
   }
 
-  /** Whether the share that was read last is not the final one, however long ago: a picture may take longer to paint. */
+  /** Whether the share that was read last is not the final one, however long ago: painting may take longer. */
   get moving() {
     return this.#read !== this.#to;
   }
