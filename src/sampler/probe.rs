@@ -45,24 +45,33 @@ impl<'a> Probe<'a> {
     /// Whether a point of the sheet of a patch, with its normal there, lies on the patch whose
     /// function this is. Without creases there are no patches, and every point does. `size` is
     /// about the size of a particle there.
-    ///
-    /// The test is made a little outside: where the bodies of a solid share a plane, each of two
-    /// branches gives f only on its inner side.
     pub(crate) fn is_on_patch(&mut self, point: Vec3, normal: Vec3, size: f32, patch: Option<u32>) -> bool {
-        /// Distance outside, in sizes of a particle, far above rounding in double precision: next
-        /// to a branch 10⁶ times as steep, the test is still made within a hundredth of a particle
-        /// from where both branches vanish.
-        const OUTSIDE: f64 = 1e-8;
+        /// Distance from other patches, in sizes of a particle, at which the test is reliable.
+        const APART: f64 = 0.1;
         patch.is_none_or(|patch| {
-            let outward = normal.as_dvec3() * (OUTSIDE * f64::from(size));
-            let mut place = point.as_dvec3();
-            if outward != DVec3::ZERO {
-                // A point in single precision may be farther from the sheet than that.
-                let step = step_to_surface(self.field.value_and_gradient(place));
-                place -= if step.length() <= f64::from(size) { step } else { DVec3::ZERO };
-            }
-            self.field.label(place + outward) == patch
+            self.gives_beside(point.as_dvec3(), normal.as_dvec3(), APART * f64::from(size), patch)
         })
+    }
+
+    /// Whether the patch whose function this is gives f next to a place near its sheet, on the side
+    /// to which the unit vector `outward` points. Reliable if the patch meets others no nearer than
+    /// `apart`.
+    ///
+    /// The test is made a little beside the sheet: where the bodies of a solid share a plane, each
+    /// of two pieces gives f only on its inner side.
+    pub(crate) fn gives_beside(&mut self, place: DVec3, outward: DVec3, apart: f64, patch: u32) -> bool {
+        /// Distance from the sheet in units of `apart`: far above rounding in double precision, and
+        /// so small that a piece counts even beside one 10⁶ times as steep.
+        const BESIDE: f64 = 1e-7;
+        /// Largest distance of the place from the sheet, in the same units.
+        const FARTHEST: f64 = 10.0;
+        let mut on_sheet = place;
+        if outward != DVec3::ZERO {
+            let step = step_to_surface(self.field.value_and_gradient(place));
+            // Written so that NaN fails.
+            on_sheet -= if step.length() <= FARTHEST * apart { step } else { DVec3::ZERO };
+        }
+        self.field.label(on_sheet + outward * (BESIDE * apart)) == patch
     }
 
     /// Whether a patch may have points in a box. Ignores the zeros of √(u² + v²) that lie on the

@@ -309,7 +309,7 @@ impl Pieces for FormulaEvaluator<'_> {
     fn edge_cells(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let bounds = self.frame.outward(bounds);
         let cells = self
-            .on_branches(|branches, values| slices::complete(branches.crease_cells(values, &bounds, width)));
+            .on_branches(|branches, values| slices::complete(branches.cells_between(values, &bounds, width)));
         cells.iter().map(|cell| cell.relative_to(self.frame.origin)).collect()
     }
 }

@@ -32,15 +32,27 @@ const MOST_WAYS: usize = 256;
 
 /// The branches that give f on the surface, and how they meet.
 #[derive(Debug, Default)]
-struct Meetings {
+pub(super) struct Meetings {
     /// Their numbers, ascending.
     seen: Vec<u32>,
     /// Pairs that meet without an edge somewhere, the smaller number first.
     tangent: Vec<[u32; 2]>,
     /// Pairs that meet at an angle somewhere.
     sharp: Vec<[u32; 2]>,
-    /// Whether it is unknown of some pair how they meet.
-    is_open: bool,
+    /// Cells in which they do.
+    pub(super) edges: Vec<Bounds>,
+    /// Pairs that may meet, and of which it is unknown how.
+    open: Vec<[u32; 2]>,
+}
+
+impl Meetings {
+    /// Whether the surface may have an edge: a pair meets at an angle, of some pair it is unknown how
+    /// it meets, or no branch was seen.
+    pub(super) fn may_have_edges(&self) -> bool {
+        !self.sharp.is_empty()
+            || self.seen.is_empty()
+            || self.open.iter().any(|pair| !self.tangent.contains(pair))
+    }
 }
 
 /// A point of the surface, with the branch that gives f there.
@@ -51,10 +63,9 @@ struct Landed {
 }
 
 impl Branches {
-    /// Joins the branches that meet without an edge on the surface in the box into patches; `cells`
-    /// contain the places where they meet. Returns whether the surface has no edge at all.
-    pub(super) async fn join_tangent(&mut self, values: &[f64], bounds: &Bounds, cells: &[Bounds]) -> bool {
-        let Meetings { seen, tangent, sharp, is_open } = self.meetings(values, bounds, cells).await;
+    /// Joins the branches that meet without an edge into patches.
+    pub(super) async fn join_tangent(&mut self, values: &[f64], meetings: Meetings) {
+        let Meetings { seen, tangent, sharp, .. } = meetings;
         // One of a pair that meets in the box may give f nowhere on its surface.
         let all = seen.iter().chain(tangent.iter().flatten()).chain(sharp.iter().flatten());
         let mut patches: Vec<u32> = all.copied().max().map_or(Vec::new(), |last| (0..=last).collect());
@@ -76,7 +87,6 @@ impl Branches {
                 self.patches.push(Patch { branches, compiled });
             }
         }
-        let is_whole = self.patches.iter().any(|patch| patch.branches == seen);
         let mut apart = Vec::new();
         for pair in &tangent {
             let pair = ascending(pair.map(|branch| self.patch_of(branch)));
@@ -87,7 +97,6 @@ impl Branches {
         apart.sort_unstable();
         apart.dedup();
         self.apart = apart;
-        is_whole && sharp.is_empty() && !is_open
     }
 
     /// The number of the patch that a branch belongs to.
@@ -124,7 +133,7 @@ impl Branches {
     }
 
     /// Finds out how the branches of the surface meet in these cells of the box.
-    async fn meetings(&mut self, values: &[f64], bounds: &Bounds, cells: &[Bounds]) -> Meetings {
+    pub(super) async fn meetings(&mut self, values: &[f64], bounds: &Bounds, cells: &[Bounds]) -> Meetings {
         let mut found = Meetings::default();
         for cell in cells {
             pause().await;
@@ -187,9 +196,12 @@ impl Branches {
                 }
                 match self.between(values, [landed[j], landed[k]], APART * bounds.diagonal()) {
                     Some((pair, _)) if self.is_limit(pair[0], values) != self.is_limit(pair[1], values) => {}
-                    Some((pair, Meet::Sharp)) => found.sharp.push(pair),
+                    Some((pair, Meet::Sharp)) => {
+                        found.sharp.push(pair);
+                        found.edges.push(*cell);
+                    }
                     Some((pair, Meet::Tangent)) => found.tangent.push(pair),
-                    None => found.is_open = true,
+                    None => found.open.push(pair),
                 }
             }
         }

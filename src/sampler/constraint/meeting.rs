@@ -14,11 +14,6 @@ pub(super) const FADED: f64 = 10.0 * ASIDE;
 /// gives f. The branches differ there by [`FADED`] times that distance, far above rounding.
 pub(super) const ASIDE: f64 = 1e-4;
 
-/// Distance outside a sheet, as a share of the reach, at which the evaluator is asked which branch
-/// gives f: far above rounding, and so small that at [`ASIDE`] a branch still counts if the other
-/// one is 10⁶ times as steep.
-const OUTSIDE: f64 = 1e-11;
-
 /// Cosine of the largest turn of a crease in one step, 30°. A step with a larger turn is halved.
 pub(super) const MOST_TURN: f64 = 0.5 * SQRT_3;
 
@@ -114,9 +109,8 @@ impl Meeting {
         Some(are_left)
     }
 
-    /// Whether a branch gives f next to its sheet, on the left and on the right of the tangent;
-    /// none if it has no sheet there. The test points are on the outer side of the sheet: inside a
-    /// solid whose bodies share a plane, each of two branches gives f only on its inner side.
+    /// Whether a branch gives f outside its sheet, on the left and on the right of the tangent; none
+    /// if it has no sheet there.
     fn gives(&self, probe: &mut Probe, b: u32, reach: f64) -> Option<[bool; 2]> {
         let (_, gradient) = branch(probe, b, self.position);
         let aside = gradient.cross(self.tangent).try_normalize()?;
@@ -125,11 +119,10 @@ impl Meeting {
         if gradient.dot(beside) < MOST_TURN * gradient.length() * beside.length() {
             return None;
         }
-        let outward = gradient.normalize_or_zero() * (OUTSIDE * reach);
+        let (outward, apart) = (gradient.normalize_or_zero(), ASIDE * reach);
         let mut is_given = |way: DVec3| {
-            let place = self.position + way * (ASIDE * reach);
-            let landed = place - step_to_surface(branch(probe, b, place));
-            probe.field.label(if landed.is_finite() { landed } else { place } + outward) == b
+            probe.count(1);
+            probe.on(Some(b)).gives_beside(self.position + way * apart, outward, apart, b)
         };
         Some([aside, -aside].map(&mut is_given))
     }
