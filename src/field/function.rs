@@ -16,9 +16,9 @@ use glam::DVec3;
 /// Edges, such as those of a union of two bodies by `min`, are found in the values of f, on a grid
 /// of 64 cells along the longest side of the box, or as many as
 /// [`Settings::survey_cells`](crate::Settings::survey_cells) says: particles lie on them, and the
-/// mesh is closed along them. Edges smaller than a cell may be missed; edges that fade out, or of a
-/// function in single precision, are not found: the mesh is open there, and the report says where.
-/// A [`PiecewiseFn`](crate::field::PiecewiseFn) says where its edges are, and so do separate bodies
+/// mesh is closed along them. Edges smaller than a cell may be missed, and those of a function in
+/// single precision are not found: the mesh is open there, and the report says where. A
+/// [`PiecewiseFn`](crate::field::PiecewiseFn) says where its edges are, and so do separate bodies
 /// joined by [`union`](crate::union).
 ///
 /// Give the box of the surface if it is known ([`Settings::in_box`](crate::Settings::in_box)).

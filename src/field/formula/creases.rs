@@ -21,8 +21,8 @@ use std::sync::Arc;
 /// wider.
 const MOST_VISITED: usize = 1 << 18;
 
-/// Width of the smallest cells, in those of the search, in which a choice that is tied nowhere else
-/// must be excluded to [keep sheets apart](super::separate): 300 on every axis.
+/// A choice keeps sheets apart if cells of this width, in units of those of the search, exclude its
+/// tie: 300 along each axis.
 const FINEST: f64 = 0.25;
 
 /// Maximum number of steps in a cell whose combinations of sides are all bounded: three at a corner

@@ -10,7 +10,7 @@ use super::branches::{Branches, ChoiceCondition, Holds, NodeRole, Patch, Side, r
 use super::compiled::Compiled;
 use super::graph::Id;
 use crate::math::newton::{self, STEPS, Slope, StepLimits, step_to_surface};
-use crate::math::{Bounds, Meet, SQRT_3};
+use crate::math::{Bounds, Meet, SHARP, SQRT_3};
 use crate::slices::pause;
 use glam::DVec3;
 use std::sync::Arc;
@@ -19,6 +19,9 @@ use std::sync::Arc;
 /// without an edge: each turns by less than 15° there. Smaller: smooth joins beside narrower
 /// fillets are found, in more time.
 const PARALLEL: f64 = 0.5 * SQRT_3;
+/// Distance between the unit normals of two branches below which they do not meet at an angle
+/// nearby: beside an edge that fades out there are places with a larger one.
+const ALIKE: f64 = 0.5 * SHARP;
 /// Distance between two points at which the normals of two branches are compared, as a share of the
 /// diagonal of the box.
 const APART: f64 = 1e-6;
@@ -154,19 +157,22 @@ impl Branches {
         found
     }
 
-    /// Whether two branches need no further look near a point: they are known to meet at an angle,
-    /// and also without an edge unless they are too far from parallel there.
+    /// Whether two branches need no further look near a point: they are known to meet both at an
+    /// angle and without an edge, or their normals there exclude the way in which they are not known
+    /// to meet.
     fn is_settled(&mut self, values: &[f64], pair: [u32; 2], p: DVec3, found: &Meetings) -> bool {
-        found.sharp.contains(&pair)
-            && (found.tangent.contains(&pair) || {
-                let [u, v] = pair.map(|branch| {
-                    let branch = self.compiled(branch, values);
-                    let slope = branch.map(|branch| branch.first_order([p], &mut self.jets)[0]);
-                    slope.map_or(DVec3::ZERO, |(_, gradient)| gradient.normalize_or_zero())
-                });
-                // A vanishing gradient says nothing.
-                u != DVec3::ZERO && v != DVec3::ZERO && u.dot(v) < PARALLEL
-            })
+        let is_known = [&found.tangent, &found.sharp].map(|pairs| pairs.contains(&pair));
+        if is_known[0] == is_known[1] {
+            return is_known[0];
+        }
+        let [u, v] = pair.map(|branch| {
+            let branch = self.compiled(branch, values);
+            let slope = branch.map(|branch| branch.first_order([p], &mut self.jets)[0]);
+            slope.map_or(DVec3::ZERO, |(_, gradient)| gradient.normalize_or_zero())
+        });
+        // A vanishing gradient says nothing.
+        let are_there = u != DVec3::ZERO && v != DVec3::ZERO;
+        are_there && if is_known[0] { u.distance(v) < ALIKE } else { u.dot(v) < PARALLEL }
     }
 
     /// Projects points of a cell onto the surface, and finds out how the branches there meet.
