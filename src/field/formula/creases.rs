@@ -21,8 +21,8 @@ use std::sync::Arc;
 /// wider.
 const MOST_VISITED: usize = 1 << 18;
 
-/// A choice keeps sheets apart if cells of this width, in units of those of the search, exclude its
-/// tie: 300 along each axis.
+/// A choice keeps sheets apart if no cell of the search, divided to this share of its width, may
+/// contain its tie: 300 cells along each axis.
 const FINEST: f64 = 0.25;
 
 /// Maximum number of steps in a cell whose combinations of sides are all bounded: three at a corner
@@ -48,10 +48,10 @@ impl Branches {
         found
     }
 
-    /// Cells of the box, no wider than `width`, that contain all places where patches of the surface
-    /// meet, and the branches of the function, joined into patches; no cells if the surface has no
-    /// edge. Products are split into factors if these cross; otherwise floors, folds and ridges are
-    /// choices.
+    /// Cells of the box, no wider than `width`, that contain all places where patches of the
+    /// surface meet, and the branches of the function, joined into patches; no cells if the surface
+    /// has no edge. Products are split into factors if these cross; otherwise floors, folds and
+    /// ridges are choices.
     pub(super) async fn found_in(
         f: &Compiled,
         values: &[f64],

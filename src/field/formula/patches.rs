@@ -49,8 +49,8 @@ pub(super) struct Meetings {
 }
 
 impl Meetings {
-    /// Whether the surface may have an edge: a pair meets at an angle, of some pair it is unknown how
-    /// it meets, or no branch was seen.
+    /// Whether the surface may have an edge: a pair meets at an angle, of some pair it is unknown
+    /// how it meets, or no branch was seen.
     pub(super) fn may_have_edges(&self) -> bool {
         !self.sharp.is_empty()
             || self.seen.is_empty()
@@ -157,9 +157,9 @@ impl Branches {
         found
     }
 
-    /// Whether two branches need no further look near a point: they are known to meet both at an
-    /// angle and without an edge, or their normals there exclude the way in which they are not known
-    /// to meet.
+    /// Whether two branches need no further look near a point: it is known that they meet at an
+    /// angle somewhere and without an edge elsewhere, or one of the two is known, and the normals
+    /// near the point exclude the other.
     fn is_settled(&mut self, values: &[f64], pair: [u32; 2], p: DVec3, found: &Meetings) -> bool {
         let is_known = [&found.tangent, &found.sharp].map(|pairs| pairs.contains(&pair));
         if is_known[0] == is_known[1] {

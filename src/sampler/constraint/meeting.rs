@@ -109,8 +109,8 @@ impl Meeting {
         Some(are_left)
     }
 
-    /// Whether a branch gives f outside its sheet, on the left and on the right of the tangent; none
-    /// if it has no sheet there.
+    /// Whether a branch gives f outside its sheet, on the left and on the right of the tangent;
+    /// none if it has no sheet there.
     fn gives(&self, probe: &mut Probe, b: u32, reach: f64) -> Option<[bool; 2]> {
         let (_, gradient) = branch(probe, b, self.position);
         let aside = gradient.cross(self.tangent).try_normalize()?;
