@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// Maximum number of cells that a search visits. The cells left are then returned as they are,
 /// wider.
-const MOST_VISITED: usize = 1 << 18;
+const MOST_VISITED: usize = 1 << 17;
 
 /// A choice keeps sheets apart if no cell of the search, divided to this share of its width, may
 /// contain its tie: 300 cells along each axis.
@@ -94,13 +94,7 @@ impl Branches {
             }
         }
         if !self.has_limits() && (cells.is_empty() || !meetings.may_have_edges()) {
-            let mut tied = Vec::new();
-            for &id in &ties.choices {
-                let search = ties.search(self, values);
-                if !search.cells(&[id], cells.clone(), FINEST * width, 1).await.is_empty() {
-                    tied.push(id);
-                }
-            }
+            let tied = ties.search(self, values).tied_in(&ties.choices, &cells, FINEST * width).await;
             *self = self.separated(&tied, values);
             return Vec::new();
         }
@@ -266,6 +260,22 @@ impl TieSearch<'_> {
             }
         }
         found
+    }
+
+    /// Those of these choices that cells of this width in one of `cells` do not exclude from being
+    /// tied on the surface.
+    async fn tied_in(&self, choices: &[Id], cells: &[Bounds], width: f64) -> Vec<Id> {
+        let (mut scratch, mut tied, mut apart) = (TieScratch::default(), Vec::new(), choices.to_vec());
+        for cell in cells {
+            pause().await;
+            for id in self.open_to(cell, &apart, &mut scratch) {
+                if !self.cells(&[id], vec![*cell], width, 1).await.is_empty() {
+                    tied.push(id);
+                }
+            }
+            apart.retain(|id| !tied.contains(id));
+        }
+        tied
     }
 
     /// Whether one of these choices may be tied on the surface in the cell.

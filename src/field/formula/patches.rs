@@ -44,17 +44,20 @@ pub(super) struct Meetings {
     sharp: Vec<[u32; 2]>,
     /// Cells in which they do.
     pub(super) edges: Vec<Bounds>,
-    /// Pairs that may meet, and of which it is unknown how.
+    /// Pairs that meet where a gradient vanishes, so that it is unknown how.
     open: Vec<[u32; 2]>,
+    /// Whether the place where some pair may meet was not found.
+    is_lost: bool,
 }
 
 impl Meetings {
-    /// Whether the surface may have an edge: a pair meets at an angle, of some pair it is unknown
-    /// how it meets, or no branch was seen.
+    /// Whether the surface may have an edge: a pair meets at an angle, of one it is unknown how it
+    /// meets, or of none it is known that it meets without an edge.
     pub(super) fn may_have_edges(&self) -> bool {
-        !self.sharp.is_empty()
-            || self.seen.is_empty()
-            || self.open.iter().any(|pair| !self.tangent.contains(pair))
+        let Self { seen, tangent, sharp, open, is_lost, .. } = self;
+        !sharp.is_empty()
+            || open.iter().any(|pair| !tangent.contains(pair))
+            || tangent.is_empty() && (*is_lost || seen.is_empty())
     }
 }
 
@@ -202,20 +205,21 @@ impl Branches {
                 }
                 match self.between(values, [landed[j], landed[k]], APART * bounds.diagonal()) {
                     Some((pair, _)) if self.is_limit(pair[0], values) != self.is_limit(pair[1], values) => {}
-                    Some((pair, Meet::Sharp)) => {
+                    Some((pair, Some(Meet::Sharp))) => {
                         found.sharp.push(pair);
                         found.edges.push(*cell);
                     }
-                    Some((pair, Meet::Tangent)) => found.tangent.push(pair),
-                    None => found.open.push(pair),
+                    Some((pair, Some(Meet::Tangent))) => found.tangent.push(pair),
+                    Some((pair, None)) => found.open.push(pair),
+                    None => found.is_lost = true,
                 }
             }
         }
     }
 
-    /// The two branches that meet between two points of the surface, and how they do; none if the
-    /// surface is not found between the points, or a gradient vanishes there.
-    fn between(&mut self, values: &[f64], ends: [Landed; 2], apart: f64) -> Option<([u32; 2], Meet)> {
+    /// The two branches that meet between two points of the surface, and how they do, if no
+    /// gradient vanishes there. None if the surface is not found between the points.
+    fn between(&mut self, values: &[f64], ends: [Landed; 2], apart: f64) -> Option<([u32; 2], Option<Meet>)> {
         let [mut from, mut to] = ends;
         let mut halvings = 0..MOST_HALVINGS;
         while from.position.distance(to.position) > apart {
@@ -228,7 +232,7 @@ impl Branches {
                 to = middle;
             }
         }
-        let meet = Meet::of_gradients([from, to].map(|end| self.slope(values, end.position).1))?;
+        let meet = Meet::of_gradients([from, to].map(|end| self.slope(values, end.position).1));
         Some((ascending([from.branch, to.branch]), meet))
     }
 
